@@ -145,6 +145,12 @@ class Array {
 using Floats = Array<const double, 1>;
 using FloatRows = Array<const double, 2>;
 
+/// Check an argument of rows, each of as many numbers as there are columns.
+inline FloatRows float_rows(nb::handle given, const char* name, std::size_t columns) {
+  const FloatRows rows(given, name);
+  return rows.of_shape({rows.shape(0), columns});
+}
+
 /// Give memory to Python as a NumPy array of this shape.
 template <class T>
 nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {

@@ -71,8 +71,7 @@ robot::Limits limits_of(const Array<const double, 2>& given, std::size_t dim) {
 std::size_t dim(const Chain& chain) { return static_cast<std::size_t>(chain.dim); }
 
 nb::object tip_poses(const Chain& chain, nb::handle q) {
-  const Array<const double, 2> given(q, "q");
-  given.of_shape({given.shape(0), dim(chain)});
+  const FloatRows given = float_rows(q, "q", dim(chain));
   std::vector<double> poses(given.shape(0) * POSE);
   without_gil([&] {
     std::vector<robot::Axis> axes(chain.joints.size());
@@ -87,8 +86,7 @@ nb::object tip_poses(const Chain& chain, nb::handle q) {
 
 /// Return how the tip moves and turns with each coordinate, (n, 6, dim).
 nb::object derivatives(const Chain& chain, nb::handle q) {
-  const Array<const double, 2> given(q, "q");
-  given.of_shape({given.shape(0), dim(chain)});
+  const FloatRows given = float_rows(q, "q", dim(chain));
   const std::size_t size = 6 * dim(chain);
   std::vector<double> written(given.shape(0) * size);
   without_gil([&] {

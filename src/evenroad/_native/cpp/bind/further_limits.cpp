@@ -49,10 +49,10 @@ void make_links(MovingLinks* self, std::size_t dim, nb::handle of_joints, nb::ha
   new (self) MovingLinks(std::move(links));
 }
 
-robot::Point point_of(nb::handle given, const char* name) {
+robot::Vector point_of(nb::handle given, const char* name) {
   const Floats numbers(given, name);
   numbers.of_shape({3});
-  robot::Point point;
+  robot::Vector point;
   std::ranges::copy(numbers.span(), point.begin());
   return point;
 }

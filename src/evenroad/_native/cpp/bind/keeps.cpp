@@ -55,7 +55,7 @@ void make_keep(Keep* self, std::string_view kind, std::size_t first, std::size_t
                nb::handle numbers) {
   const Array<const double, 1> given(numbers, "numbers", Entries::ANY);
   require(limit > 0.0, "a limit must be > 0");
-  new (self) Keep{KINDS.from(kind), first, second, limit, {given.span().begin(), given.span().end()}, 0};
+  new (self) Keep{KINDS.from(kind), first, second, limit, {given.span().begin(), given.span().end()}, 0, 0};
 }
 
 /// Take the chains of all tips, constraints, and limits of the joints.
@@ -73,7 +73,7 @@ void make_keeps(Keeps* self, nb::list chains, nb::list constraints, nb::handle l
   }
   for (nb::handle constraint : constraints) {
     Keep keep = *value_of<const Keep*>(constraint, "constraints");
-    keep.rows = rows_of(keep.kind, keep.numbers.size(), dim);
+    keep.row = keeps.rows(), keep.rows = rows_of(keep.kind, keep.numbers.size(), dim);
     require(keep.kind == KeepKind::JOINTS || (keep.first < keeps.chains.size() && keep.second < keeps.chains.size()),
             "tips must be numbers of chains");
     keeps.each.push_back(std::move(keep));
@@ -82,16 +82,14 @@ void make_keeps(Keeps* self, nb::list chains, nb::list constraints, nb::handle l
 }
 
 nb::object shares(const Keeps& keeps, nb::handle q) {
-  const Array<const double, 2> given(q, "q");
-  given.of_shape({given.shape(0), keeps.dim()});
+  const FloatRows given = float_rows(q, "q", keeps.dim());
   OwnMatrix<double> written(given.shape(0), keeps.each.size());
   without_gil([&] { keeps.write_shares(given.matrix(), written); });
   return as_rows(std::move(written));
 }
 
 nb::object residuals(const Keeps& keeps, nb::handle q) {
-  const Array<const double, 2> given(q, "q");
-  given.of_shape({given.shape(0), keeps.dim()});
+  const FloatRows given = float_rows(q, "q", keeps.dim());
   OwnMatrix<double> written(given.shape(0), keeps.rows());
   without_gil([&] { keeps.write_residuals(given.matrix(), written); });
   return as_rows(std::move(written));
@@ -119,9 +117,8 @@ void make_walking(Walking* self, nb::handle scale, double step, double jump, con
 
 /// Return configurations moved onto the constraints, and which got there.
 nb::tuple project(const Keeps& keeps, nb::handle q, const Projecting& how) {
-  const Array<const double, 2> given(q, "q");
+  const FloatRows given = float_rows(q, "q", keeps.dim());
   const std::size_t rows = given.shape(0);
-  given.of_shape({rows, keeps.dim()});
   std::vector<double> moved(given.span().begin(), given.span().end());
   std::vector<std::uint8_t> good = without_gil([&] { return keeps.project({moved.data(), rows, keeps.dim()}, how); });
   return nb::make_tuple(as_numpy(std::move(moved), {rows, keeps.dim()}), as_bools(std::move(good), {rows}));
@@ -170,8 +167,7 @@ nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle directions, const
 
 /// Return the states of paths with that many pieces for one of each motion, and how many each path has.
 nb::tuple refine(const Keeps& keeps, nb::handle paths, nb::handle counts, int pieces, const Walking& how) {
-  const Array<const double, 2> given(paths, "paths");
-  given.of_shape({given.shape(0), keeps.dim()});
+  const FloatRows given = float_rows(paths, "paths", keeps.dim());
   const Array<const std::int64_t, 1> sizes(counts, "counts");
   std::size_t total = 0;
   for (const std::int64_t each : sizes.span()) {

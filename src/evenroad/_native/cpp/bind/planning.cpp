@@ -116,8 +116,7 @@ void make_improvement(Improvement* improvement, MotionChecks& checks, nb::handle
                       const Drivers& drivers, nb::handle path, std::int64_t goal, std::int64_t motions,
                       bool is_smoothing) {
   const std::size_t dim = checks.joints.size();
-  const FloatRows terminals(start_and_goals, "terminals");
-  terminals.of_shape({terminals.shape(0), dim});
+  const FloatRows terminals = float_rows(start_and_goals, "terminals", dim);
   require(terminals.shape(0) >= 2, "terminals must be a start and one goal or more");
   require(goal >= 0 && motions >= 0, "goal and motions must be 0 or more");
   planning::First first{path_from(FloatRows(path, "path"), checks), goal, motions};

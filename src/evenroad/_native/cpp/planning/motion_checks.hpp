@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "robot/motion_check.hpp"
 
@@ -31,7 +32,14 @@ class MotionChecks {
   std::span<double> states_;
 
  public:
-  explicit MotionChecks(std::shared_ptr<const robot::Checker> checker);
+  explicit MotionChecks(std::shared_ptr<const robot::Checker> checker)
+      : checker_(std::move(checker)),
+        workspace_(checker_->borrow()),
+        // Sixteen numbers a coordinate, one coordinate after the other.
+        states_(reinterpret_cast<double*>(workspace_->states.data()), LANES * workspace_->states.size()),
+        joints(checker_->robot().joints),
+        resolution(checker_->resolution()),
+        counts(workspace_->counts) {}
 
   const robot::Joints& joints;
   /// Largest distance between neighbouring states of a motion.
@@ -43,22 +51,29 @@ class MotionChecks {
 
   /// Return which of the sixteen configurations touch something.  Those that do not matter, as bits, count as touching;
   /// where one of a group of neighbours touches something, as many as are wanted together, all may count.
-  Touching touching(robot::Mask idle = 0, Wanted wanted = Wanted::ALL);
+  Touching touching(robot::Mask idle = 0, Wanted wanted = Wanted::ALL) {
+    return {robot::blocked(*workspace_, wanted, idle)};
+  }
 
   /// Return whether a motion between configurations within bounds is free at its states.
-  bool is_free(ConstConfiguration a, ConstConfiguration b, Known known);
-
-  /// Return whether no more than sixteen states of a motion between free ends are free: enough before a proof.
-  bool is_free_coarsely(ConstConfiguration a, ConstConfiguration b);
+  bool is_free(ConstConfiguration a, ConstConfiguration b, Known known) {
+    return robot::motion_free(*workspace_, a, b, known);
+  }
 
   /// Return whether a motion is proved free throughout, not at its states alone.
-  bool is_proved(ConstConfiguration a, ConstConfiguration b, ProofLimits limits);
+  bool is_proved(ConstConfiguration a, ConstConfiguration b, ProofLimits limits) {
+    return robot::motion_proved(*workspace_, a, b, limits);
+  }
 
   /// Return whether a motion between free ends is free at sixteen of its states at most, and then proved.
-  bool is_shortcut(ConstConfiguration a, ConstConfiguration b, ProofLimits limits);
+  bool is_shortcut(ConstConfiguration a, ConstConfiguration b, ProofLimits limits) {
+    return robot::is_shortcut(*workspace_, a, b, limits);
+  }
 
   /// Keep states so far from obstacles from now on [m], 0 again for the bodies as they are; proofs take those anyway.
-  void keep_away(double margin);
+  void keep_away(double margin) {
+    workspace_->judge_by(margin > 0 ? &checker_->wider(static_cast<float>(margin)) : nullptr);
+  }
 };
 
 }  // namespace evenroad::planning

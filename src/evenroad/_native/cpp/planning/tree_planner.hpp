@@ -46,7 +46,6 @@ class TreePlanner {
   std::int64_t goal() const { return goal_; }
 
   const Tree& tree(std::size_t number) const { return trees_[number]; }
-  const robot::Counts& counts() const { return checks_.counts; }
 
  private:
   void plant();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/disjoint_sets.hpp"
+
 namespace evenroad::roadmap {
 
 Rows::Rows(std::size_t nodes, Matrix<const std::int32_t> edges, std::int32_t numbered_from)
@@ -24,15 +26,7 @@ Graph Graph::with_links(std::size_t nodes, Matrix<const std::int32_t> links, std
 }
 
 void join(std::span<std::int32_t> label, Matrix<const std::int32_t> edges) {
-  // Union-find; the root of a component is always its lowest node.
-  const auto root_of = [&](std::int32_t node) {
-    while (label[node] != node) node = label[node] = label[label[node]];
-    return node;
-  };
-  for (std::size_t e = 0; e < edges.rows; e++) {
-    const std::int32_t a = root_of(edges(e, 0)), b = root_of(edges(e, 1));
-    label[std::max(a, b)] = std::min(a, b);
-  }
+  for (std::size_t e = 0; e < edges.rows; e++) unite(label, edges(e, 0), edges(e, 1));
   // Roots are lower than their children, so one ascending sweep flattens every tree.
   for (std::int32_t& each : label) each = label[each];
 }

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "common/time_limit.hpp"
+#include "roadmap/nearest.hpp"
 
 namespace evenroad::roadmap {
 
@@ -110,44 +111,6 @@ class Tree {
   std::vector<std::int32_t> order_;
   std::vector<Node> nodes_;
   std::vector<double> low_, high_;
-};
-
-template <bool Wraps>
-double squared_distance(const double* a, const double* b, std::span<const double> period) {
-  double total = 0.0;
-  for (std::size_t axis = 0; axis < period.size(); axis++) {
-    double gap = a[axis] - b[axis];
-    if (Wraps) gap = std::abs(gap), gap = std::min(gap, period[axis] - gap);
-    total += gap * gap;
-  }
-  return total;
-}
-
-/// The nearest points that were found, sorted; of equally far ones the lower indices.
-class Nearest {
- public:
-  Nearest(std::span<std::int32_t> found, std::vector<double>& distances) : found_(found), distances_(distances) {}
-
-  bool is_full() const { return count_ == found_.size(); }
-  double farthest() const { return distances_[found_.size() - 1]; }
-
-  void offer(double distance, std::int32_t point) {
-    if (is_full() && (distance > farthest() || (distance == farthest() && point > found_.back()))) return;
-    std::size_t slot = is_full() ? found_.size() - 1 : count_++;
-    for (; slot > 0 && is_before(distance, point, slot - 1); slot--) {
-      distances_[slot] = distances_[slot - 1], found_[slot] = found_[slot - 1];
-    }
-    distances_[slot] = distance, found_[slot] = point;
-  }
-
- private:
-  bool is_before(double distance, std::int32_t point, std::size_t slot) const {
-    return distances_[slot] > distance || (distances_[slot] == distance && found_[slot] > point);
-  }
-
-  std::span<std::int32_t> found_;
-  std::vector<double>& distances_;
-  std::size_t count_ = 0;
 };
 
 /// A node that waits to be visited, and the squared distance of its box.  A tree is never deeper than this stack.

@@ -46,8 +46,8 @@ void Chain::write_derivative(const Pose& tip, std::span<const Axis> axes, std::s
   std::fill(derivative.begin(), derivative.end(), 0.0);
   for (std::size_t i = 0; i < joints.size(); i++) {
     const ChainJoint& joint = joints[i];
-    const Point &axis = axes[i].direction, &at = axes[i].origin;
-    const Point arm = {tip.origin[0] - at[0], tip.origin[1] - at[1], tip.origin[2] - at[2]};
+    const Vector &axis = axes[i].direction, &at = axes[i].origin;
+    const Vector arm = tip.origin - at;
     double* column = &derivative[static_cast<std::size_t>(joint.coordinate)];
     for (std::size_t k = 0; k < 3; k++) {
       const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;

@@ -5,14 +5,14 @@
 #include <span>
 #include <vector>
 
-namespace evenroad::robot {
+#include "robot/vector.hpp"
 
-using Point = std::array<double, 3>;
+namespace evenroad::robot {
 
 /// Where a frame is in another: its rotation row by row, and its origin.
 struct Pose {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
-  Point origin{};
+  Vector origin{};
 };
 
 /// A joint turns about, or slides along, the z axis of its frame.
@@ -25,7 +25,7 @@ struct ChainJoint {
 
 /// The axis of a joint: a direction, and a point on it.
 struct Axis {
-  Point direction, origin;
+  Vector direction, origin;
 };
 
 struct Chain {

@@ -18,7 +18,6 @@ Checker::Checker(std::shared_ptr<const Robot> robot, std::shared_ptr<const Scene
     : robot_(std::move(robot)),
       scene_(std::move(scene)),
       resolution_(resolution),
-      clearance_(clearance),
       lengths_(clearance > 0 ? robot_->lengths.enlarged(static_cast<float>(clearance)) : robot_->lengths),
       fixed_contact_(find_fixed_contact(*robot_, *scene_)),
       never_free_(touches_itself || fixed_contact_.with != Contact::With::NOTHING) {}

@@ -59,7 +59,6 @@ class Checker {
   const Scene& scene() const { return *scene_; }
   const Lengths& lengths() const { return lengths_; }
   double resolution() const { return resolution_; }  // largest distance between neighbouring states of a motion
-  double clearance() const { return clearance_; }
   const Contact& fixed_contact() const { return fixed_contact_; }  // of what does not move with the scene
   bool is_never_free() const { return never_free_; }
 
@@ -73,7 +72,7 @@ class Checker {
   friend struct Return;
   std::shared_ptr<const Robot> robot_;
   std::shared_ptr<const Scene> scene_;
-  double resolution_, clearance_;
+  double resolution_;
   Lengths lengths_;
   Contact fixed_contact_;
   bool never_free_;

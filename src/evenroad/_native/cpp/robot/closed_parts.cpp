@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <numeric>
 #include <utility>
 
+#include "common/disjoint_sets.hpp"
 #include "robot/shells.hpp"
 
 namespace evenroad::robot {
@@ -58,21 +58,6 @@ std::vector<Number> first_at_point(std::span<const double> vertices) {
   return first;
 }
 
-/// Sets of things that hang together.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0); }
-
-  Number root(Number i) {
-    while (above_[i] != i) i = above_[i] = above_[above_[i]];
-    return i;
-  }
-  void join(Number a, Number b) { above_[root(a)] = root(b); }
-
- private:
-  std::vector<Number> above_;
-};
-
 /// A triangle by the numbers of its corners.
 using Corners = std::array<Number, 3>;
 
@@ -89,9 +74,9 @@ struct Mesh {
   std::vector<Edge> edges;
   std::vector<Number> edge_of;      // of each side of each triangle, -1 of one that has two equal corners
   std::vector<std::uint8_t> again;  // which triangles are there before
-  Sets parts;                       // of corners
+  std::vector<Number> parts;        // sets of corners
 
-  Number part(std::size_t triangle) { return parts.root(triangles[triangle][0]); }
+  Number part(std::size_t triangle) { return root_of(parts, triangles[triangle][0]); }
   bool is_upward(Number side) const {
     const Corners& of = triangles[side / 3];
     return of[(side + 1) % 3] > of[side % 3];
@@ -115,7 +100,7 @@ std::vector<std::uint8_t> found_again(const std::vector<Corners>& triangles) {
 
 Mesh mesh_of(std::span<const double> vertices, std::span<const std::int64_t> rows) {
   const std::vector<Number> first = first_at_point(vertices);
-  Mesh mesh{{}, {}, std::vector<Number>(rows.size(), -1), {}, Sets(first.size())};
+  Mesh mesh{{}, {}, std::vector<Number>(rows.size(), -1), {}, sets_of_one(first.size())};
   mesh.triangles.resize(rows.size() / 3);
   for (std::size_t i = 0; i < rows.size(); i++) {
     mesh.triangles[i / 3][i % 3] = first[static_cast<std::size_t>(rows[i])];
@@ -125,7 +110,7 @@ Mesh mesh_of(std::span<const double> vertices, std::span<const std::int64_t> row
   Number most = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); i++) {
     const Corners& of = mesh.triangles[i];
-    mesh.parts.join(of[0], of[1]), mesh.parts.join(of[1], of[2]);
+    unite(mesh.parts, of[0], of[1]), unite(mesh.parts, of[1], of[2]);
     if (of[0] == of[1] || of[1] == of[2] || of[2] == of[0]) continue;
     for (std::size_t k = 0; k < 3; k++) {
       const Number low = std::min(of[k], of[(k + 1) % 3]), high = std::max(of[k], of[(k + 1) % 3]);
@@ -145,7 +130,7 @@ Mesh mesh_of(std::span<const double> vertices, std::span<const std::int64_t> row
 /// Triangles that face the same way once some are turned.
 class Facing {
  public:
-  explicit Facing(std::size_t count) : above_(count), turned_(count) { std::iota(above_.begin(), above_.end(), 0); }
+  explicit Facing(std::size_t count) : above_(sets_of_one(count)), turned_(count) {}
 
   /// Return the first of those that hang together with a triangle, and whether one of the two has to be turned.
   std::pair<Number, std::uint8_t> root(Number i) {
@@ -181,7 +166,7 @@ void find_closed(Mesh& mesh, std::size_t corners, ClosedParts& made) {
     if (mesh.edge_of[side] >= 0) mesh.edges[mesh.edge_of[side]].once += mesh.again[side / 3] == 0;
   }
   for (const Edge& edge : mesh.edges) {
-    const Number part = mesh.parts.root(edge.low);
+    const Number part = root_of(mesh.parts, edge.low);
     if (edge.times % 2 != 0) is_open[part] = 1;
     if (edge.once % 2 != 0) is_open_once[part] = 1;
   }
@@ -205,7 +190,7 @@ std::vector<std::uint8_t> find_tangled(Mesh& mesh, std::size_t corners, const Cl
   for (const Edge& edge : mesh.edges) {
     if (edge.counted != 2) continue;
     const bool differ = mesh.is_upward(edge.first) == mesh.is_upward(edge.last);
-    if (!facing.join(edge.first / 3, edge.last / 3, differ)) is_tangled[mesh.parts.root(edge.low)] = 1;
+    if (!facing.join(edge.first / 3, edge.last / 3, differ)) is_tangled[root_of(mesh.parts, edge.low)] = 1;
   }
   // At edges of more triangles those of each surface have to run in both directions equally often.
   struct Side {
@@ -226,7 +211,7 @@ std::vector<std::uint8_t> find_tangled(Mesh& mesh, std::size_t corners, const Cl
     for (; end < sides.size() && sides[end].edge == sides[i].edge && sides[end].surface == sides[i].surface; end++) {
       turns += sides[end].turn;
     }
-    if (turns != 0) is_tangled[mesh.parts.root(mesh.edges[sides[i].edge].low)] = 1;
+    if (turns != 0) is_tangled[root_of(mesh.parts, mesh.edges[sides[i].edge].low)] = 1;
   }
   return is_tangled;
 }
@@ -240,7 +225,7 @@ std::vector<std::uint8_t> find_unturned(Mesh& mesh, std::size_t corners, const C
     turns[mesh.edge_of[side]] += mesh.is_upward(static_cast<Number>(side)) ? 1 : -1;
   }
   for (std::size_t edge = 0; edge < turns.size(); edge++) {
-    if (turns[edge] != 0) is_unturned[mesh.parts.root(mesh.edges[edge].low)] = 1;
+    if (turns[edge] != 0) is_unturned[root_of(mesh.parts, mesh.edges[edge].low)] = 1;
   }
   return is_unturned;
 }

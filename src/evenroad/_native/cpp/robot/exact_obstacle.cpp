@@ -24,7 +24,8 @@ void put(Vec3x16& where, int lane, float x, float y, float z) {
 void add_leaf(Obstacles& all, const Exact& o, double width) {
   constexpr double UP = 1.0 + 1e-6;  // for the rounding of single precision
   if (all.hulls.points.empty()) all.hulls.points.push_back({});
-  HullNode<float> leaf{{-1, -1}, {0, 1}, {}, {}, {}, 0, static_cast<float>(width), 0, {}, {}, false};
+  HullNode<float> leaf;
+  leaf.points = {0, 1}, leaf.width = static_cast<float>(width);
   const bool round = o.form == Form::CYLINDER;
   double squared = 0;
   for (int axis = 0; axis < 3; axis++) {

@@ -13,25 +13,12 @@ namespace {
 
 using Node = HullNode<float>;
 
-/// The poses of one frame in another.
-struct RelativePose16 {
-  Vec3x16 rows[3], translation;
-
-  /// Return a place in the second body's frame as the first sees it.
-  EVENROAD_INLINE Vec3x16 seen(Vec3x16 point) const { return translation + turned(point); }
-  EVENROAD_INLINE Vec3x16 turned(Vec3x16 v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
-  /// Return a direction in the first body's frame as the second sees it.
-  EVENROAD_INLINE Vec3x16 turned_back(Vec3x16 v) const { return combine(rows[0], v.x, rows[1], v.y, rows[2], v.z); }
-};
-
-RelativePose16 relative_pose(const PlacedFrame& a, const PlacedFrame& b) {
-  const Vec3x16 offset = b.origin - a.origin;
-  const auto row = [&](Floats16 x, Floats16 y, Floats16 z) {
-    return combine(b.rows[0], x, b.rows[1], y, b.rows[2], z);
-  };
-  return {{row(a.rows[0].x, a.rows[1].x, a.rows[2].x), row(a.rows[0].y, a.rows[1].y, a.rows[2].y),
-           row(a.rows[0].z, a.rows[1].z, a.rows[2].z)},
-          combine(a.rows[0], offset.x, a.rows[1], offset.y, a.rows[2], offset.z)};
+/// Return the second frame as the first sees it.
+PlacedFrame relative_pose(const PlacedFrame& a, const PlacedFrame& b) {
+  return {
+      {b.turned_back({a.rows[0].x, a.rows[1].x, a.rows[2].x}), b.turned_back({a.rows[0].y, a.rows[1].y, a.rows[2].y}),
+       b.turned_back({a.rows[0].z, a.rows[1].z, a.rows[2].z})},
+      a.turned_back(b.origin - a.origin)};
 }
 
 /// Return the same for one lane, in double precision.
@@ -59,8 +46,8 @@ struct TwoBoxes {
   Vec3x16 between, turned, sizes, other_sizes;
 };
 
-EVENROAD_INLINE TwoBoxes boxes_of(const RelativePose16& pose, const Node& a, const Node& b) {
-  const Vec3x16 between = spread3(a.centre) - pose.seen(spread3(b.centre));
+EVENROAD_INLINE TwoBoxes boxes_of(const PlacedFrame& pose, const Node& a, const Node& b) {
+  const Vec3x16 between = spread3(a.centre) - (pose.origin + pose.turned(spread3(b.centre)));
   const Vec3x16 half = spread3(a.half), other = spread3(b.half);
   const Vec3x16 x = abs(pose.rows[0]), y = abs(pose.rows[1]), z = abs(pose.rows[2]);
   return {between, pose.turned_back(between), Vec3x16{dot(x, other), dot(y, other), dot(z, other)} + half,
@@ -68,14 +55,14 @@ EVENROAD_INLINE TwoBoxes boxes_of(const RelativePose16& pose, const Node& a, con
 }
 
 /// Return the mask of lanes in which no side of the boxes of two nodes separates them.
-Mask boxes_near(const RelativePose16& pose, const Node& a, const Node& b, Floats16 near) {
+Mask boxes_near(const PlacedFrame& pose, const Node& a, const Node& b, Floats16 near) {
   const TwoBoxes boxes = boxes_of(pose, a, b);
   const Vec3x16 gap = abs(boxes.between) - boxes.sizes, other = abs(boxes.turned) - boxes.other_sizes;
   return below_zero(max(largest(gap), largest(other)) - near);
 }
 
 /// Return the mask of those queried lanes in which none of some planes separates two leaves.
-Mask not_separated(const RelativePose16& pose, const HullTree<float>& tree, const Node& a, const HullTree<float>& other,
+Mask not_separated(const PlacedFrame& pose, const HullTree<float>& tree, const Node& a, const HullTree<float>& other,
                    const Node& b, Floats16 near, Mask asked) {
   const TwoBoxes boxes = boxes_of(pose, a, b);
   const auto first = [&](Vec3x16 along) { return farthest(along, tree, a); };
@@ -83,7 +70,7 @@ Mask not_separated(const RelativePose16& pose, const HullTree<float>& tree, cons
     const Farthest16 on = farthest(pose.turned_back(along), other, b);
     return Farthest16{on.along, pose.turned(on.corner)};
   };
-  return unseparated(boxes.between, boxes.sizes, pose.translation, first, second, near + (a.width + b.width), asked);
+  return unseparated(boxes.between, boxes.sizes, pose.origin, first, second, near + (a.width + b.width), asked);
 }
 
 }  // namespace
@@ -91,7 +78,7 @@ Mask not_separated(const RelativePose16& pose, const HullTree<float>& tree, cons
 Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float margin, Mask asked, Wanted wanted,
                    KeptOfPairs* kept) {
   const HullTree<float>&tree = first.tree, &other = second.tree;
-  const RelativePose16 pose = relative_pose(first.frame, second.frame);
+  const PlacedFrame pose = relative_pose(first.frame, second.frame);
   // How near is wrong by no more than single precision loses of the lengths that it comes of.
   const Floats16 near = spread(margin) + lost(first, second);
   struct Waiting {

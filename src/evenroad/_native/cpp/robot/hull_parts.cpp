@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/disjoint_sets.hpp"
 #include "robot/hull_tree.hpp"
 
 namespace evenroad::robot {
@@ -83,7 +84,7 @@ struct Builder {
 
   /// Write the node of the parts from a first to one before an end in the order.
   void fill(int number, int first, int end) {
-    HullNode<T> node{{-1, -1}, {}, {}, {}, {}, 0, 0, 0, {}, {}, false};
+    HullNode<T> node;
     double centre[3], half[3], radius = 0;
     for (int k = 0; k < 3; k++) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -132,14 +133,11 @@ struct Builder {
 
 /// Return how a line along `direction` from a place crosses a triangle ahead of the place: 0, or 1 along the triangle's
 /// normal and -1 against it; nothing where that is uncertain.
-std::optional<int> crossing(const HullPoint<float>* corners, const double (&point)[3], const double (&direction)[3]) {
-  double p[3][3], sides[3];
-  for (int i = 0; i < 3; i++) {
-    p[i][0] = corners[i].x - point[0], p[i][1] = corners[i].y - point[1], p[i][2] = corners[i].z - point[2];
-  }
-  const auto volume = [](const double* a, const double* b, const double* c) {
-    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-  };
+std::optional<int> crossing(const HullPoint<float>* corners, const Vector& point, const Vector& direction) {
+  Vector p[3];
+  double sides[3];
+  for (int i = 0; i < 3; i++) p[i] = Vector{corners[i].x, corners[i].y, corners[i].z} - point;
+  const auto volume = [](const Vector& a, const Vector& b, const Vector& c) { return dot(a, cross(b, c)); };
   for (int i = 0; i < 3; i++) sides[i] = volume(direction, p[i], p[(i + 1) % 3]);
   const double least = std::min({sides[0], sides[1], sides[2]}), most = std::max({sides[0], sides[1], sides[2]});
   if (least < -ROUNDED && most > ROUNDED) return 0;
@@ -151,8 +149,7 @@ std::optional<int> crossing(const HullPoint<float>* corners, const double (&poin
 
 /// Return how often surfaces below a root wind around a point, seen along a direction, or nothing where that is
 /// uncertain.
-std::optional<int> windings(const HullTree<float>& tree, int root, const double (&point)[3],
-                            const double (&direction)[3]) {
+std::optional<int> windings(const HullTree<float>& tree, int root, const Vector& point, const Vector& direction) {
   int waiting[DEEPEST], count = 1, times = 0;
   waiting[0] = root;
   while (count > 0) {
@@ -232,12 +229,8 @@ void add_around(HullTree<float>& tree, int root, std::span<const double> points,
 
 std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root) {
   std::map<std::array<float, 3>, int> numbers;  // of corners
-  std::vector<int> above;                       // of a corner another one of the same part, or itself
+  std::vector<std::int32_t> above;              // sets of corners of one part: the root is one of the last triangle
   std::vector<Vec3> points, found;
-  const auto first_of = [&](int corner) {
-    while (above[corner] != corner) corner = above[corner] = above[above[corner]];
-    return corner;
-  };
   std::vector<int> waiting{root};
   while (!waiting.empty()) {
     const HullNode<float>& node = tree.nodes[waiting.back()];
@@ -252,7 +245,7 @@ std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root) {
       const auto [entry, added] = numbers.try_emplace({x, y, z}, static_cast<int>(above.size()));
       if (added) above.push_back(entry->second), points.push_back({x, y, z});
       if (first < 0) first = entry->second;
-      above[first_of(entry->second)] = first_of(first);
+      above[root_of(above, entry->second)] = root_of(above, first);
     }
   }
   for (int corner = 0; corner < static_cast<int>(above.size()); corner++) {
@@ -261,10 +254,10 @@ std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root) {
   return found;
 }
 
-bool encloses(const HullTree<float>& tree, int root, const double (&point)[3]) {
+bool encloses(const HullTree<float>& tree, int root, const Vector& point) {
   // Lines along no usual axis; where one passes through a side of a triangle, the next is taken.
-  constexpr double DIRECTIONS[3][3] = {{0.3826, 0.5113, 0.7695}, {-0.6711, 0.4127, 0.6159}, {0.5217, -0.7723, 0.3624}};
-  for (const auto& direction : DIRECTIONS) {
+  constexpr Vector DIRECTIONS[] = {{0.3826, 0.5113, 0.7695}, {-0.6711, 0.4127, 0.6159}, {0.5217, -0.7723, 0.3624}};
+  for (const Vector& direction : DIRECTIONS) {
     if (const auto times = windings(tree, root, point, direction)) return *times != 0;
   }
   return true;

@@ -24,15 +24,18 @@ struct HullPoint {
 
 template <class T>
 struct HullNode {
-  int children[2];  // -1 twice for a leaf
-  Range points;     // of a leaf's hull; of one around all that is below, if there is one
-  Range blocks;     // of sixteen of these points, if they are many
-  T centre[3], half[3];
-  T radius;         // of a ball about the same centre
-  T width;          // by how much a leaf's hull is widened
-  T disc, axis[3];  // a leaf's hull is widened by a disc of this radius across an axis, too: so a segment is a cylinder
-  T extents[3];     // a leaf's hull is widened by a box along the axes, too: an obstacle is a point that is widened
-  bool encloses;    // whether a leaf is a triangle of a closed surface, which has its inside to the left of its turn
+  int children[2] = {-1, -1};  // of a leaf -1 twice
+  Range points;                // of a leaf's hull; of one around all that is below, if there is one
+  Range blocks;                // of sixteen of these points, if they are many
+  T centre[3] = {0, 0, 0}, half[3] = {0, 0, 0};
+  T radius = 0;  // of a ball about the same centre
+  T width = 0;   // by how much a leaf's hull is widened
+  // A leaf's hull is widened by a disc of this radius across an axis, too: so a segment is a cylinder.
+  T disc = 0, axis[3] = {0, 0, 0};
+  // It is widened by a box along the axes, too: an obstacle is a point that is widened.
+  T extents[3] = {0, 0, 0};
+  bool encloses =
+      false;  // whether a leaf is a triangle of a closed surface, which has its inside to the left of its turn
   bool is_leaf() const { return children[0] < 0; }
 };
 
@@ -81,7 +84,7 @@ std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root);
 
 /// Return whether closed surfaces below a root go around a point in the body's frame, or it is uncertain whether one
 /// does.
-bool encloses(const HullTree<float>& tree, int root, const double (&point)[3]);
+bool encloses(const HullTree<float>& tree, int root, const Vector& point);
 
 /// The pose of one body in the frame of another: rotation row by row, translation.
 struct RelativePose {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/time_limit.hpp"
+#include "robot/damped_solve.hpp"
 
 namespace evenroad::robot {
 
@@ -21,39 +22,29 @@ constexpr double INF = std::numeric_limits<double>::infinity();
 /// By how much a tip has to move and to turn, or does so with a coordinate: in the root's frame.
 using Twist = std::array<double, 6>;
 
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double norm(const Point& a) { return std::sqrt(dot(a, a)); }
-
-Point scaled(const Point& a, double by) { return {a[0] * by, a[1] * by, a[2] * by}; }
-
 /// Return the turn, axis times angle, that takes an axis of the tip to where it is to point.
-Point turn_of_axis(const Pose& tip, const PoseTask& task) {
+Vector turn_of_axis(const Pose& tip, const PoseTask& task) {
   const auto& r = tip.rotation;
-  const Point a = {dot({r[0], r[1], r[2]}, task.axis), dot({r[3], r[4], r[5]}, task.axis),
-                   dot({r[6], r[7], r[8]}, task.axis)};
-  Point across = cross(a, task.direction);
+  const Vector a = {dot({r[0], r[1], r[2]}, task.axis), dot({r[3], r[4], r[5]}, task.axis),
+                    dot({r[6], r[7], r[8]}, task.axis)};
+  Vector across = cross(a, task.direction);
   double sine = norm(across);
   const double cosine = dot(a, task.direction);
   if (sine < 1e-12 && cosine < 0.0) {
     // Opposite: any axis across will do.
-    across = std::abs(a[0]) < 0.9 ? Point{0.0, a[2], -a[1]} : Point{-a[2], 0.0, a[0]};
+    across = std::abs(a[0]) < 0.9 ? Vector{0.0, a[2], -a[1]} : Vector{-a[2], 0.0, a[0]};
     sine = 1e-12;
     const double length = norm(across);
     for (double& each : across) each = each * sine / length;
   }
-  return scaled(across, sine > 1e-12 ? std::atan2(sine, cosine) / sine : 1.0);
+  return across * (sine > 1e-12 ? std::atan2(sine, cosine) / sine : 1.0);
 }
 
 /// Return the turn, axis times angle, that takes the tip's rotation to the wanted one.
-Point turn_of_all(const Pose& tip, const PoseTask& task) {
+Vector turn_of_all(const Pose& tip, const PoseTask& task) {
   // Of the goal times the tip's inverse: twice the axis times the sine, and one plus twice the cosine.
   const auto &goal = task.pose.rotation, &own = tip.rotation;
-  Point twice{};
+  Vector twice{};
   double trace = 0.0;
   for (int k = 0; k < 3; k++) {
     twice[0] += goal[6 + k] * own[3 + k] - goal[3 + k] * own[6 + k];
@@ -62,10 +53,10 @@ Point turn_of_all(const Pose& tip, const PoseTask& task) {
     trace += goal[k] * own[k] + goal[3 + k] * own[3 + k] + goal[6 + k] * own[6 + k];
   }
   const double sine = 0.5 * norm(twice), angle = std::atan2(sine, 0.5 * (trace - 1.0));
-  if (sine > 1e-9) return scaled(twice, 0.5 * angle / sine);
+  if (sine > 1e-9) return twice * (0.5 * angle / sine);
   // Half a turn has no axis here: one is as good as another, and the next step will see it.
   if (angle > 1.0) twice[0] += 2.0 * angle;
-  return scaled(twice, 0.5);
+  return twice * 0.5;
 }
 
 Twist error_of(const Pose& tip, const PoseTask& task) {
@@ -74,7 +65,7 @@ Twist error_of(const Pose& tip, const PoseTask& task) {
     for (int axis = 0; axis < 3; axis++) error[axis] = task.pose.origin[axis] - tip.origin[axis];
   }
   if (task.turn != Turn::NOT) {
-    const Point turn = task.turn == Turn::ALL ? turn_of_all(tip, task) : turn_of_axis(tip, task);
+    const Vector turn = task.turn == Turn::ALL ? turn_of_all(tip, task) : turn_of_axis(tip, task);
     std::copy(turn.begin(), turn.end(), error.begin() + 3);
   }
   return error;
@@ -135,12 +126,10 @@ class Solver {
     std::fill(jacobian_.begin(), jacobian_.end(), Twist{});
     for (std::size_t i = 0; i < axes_.size(); i++) {
       const ChainJoint& joint = chain_.joints[i];
-      const Point axis = scaled(axes_[i].direction, joint.multiplier);
-      const Point& at = axes_[i].origin;
+      const Vector axis = axes_[i].direction * joint.multiplier;
       Twist& column = jacobian_[joint.coordinate];
       if (task.placed) {
-        const Point arm = {tip.origin[0] - at[0], tip.origin[1] - at[1], tip.origin[2] - at[2]};
-        const Point moves = joint.slides ? axis : cross(axis, arm);
+        const Vector moves = joint.slides ? axis : cross(axis, tip.origin - axes_[i].origin);
         for (int k = 0; k < 3; k++) column[k] += moves[k];
       }
       if (joint.slides || task.turn == Turn::NOT) continue;
@@ -166,29 +155,18 @@ class Solver {
     }
   }
 
-  /// Write the step of the coordinates that are used, by Cholesky's factor of J J' + damping.
+  /// Write the step of the coordinates that are used.
   void write_least_squares(const Twist& error, double damping) {
-    double factor[6][6];
-    Twist solved;
-    for (int i = 0; i < 6; i++) {
-      for (int j = 0; j <= i; j++) {
+    double square[36];
+    for (std::size_t i = 0; i < 6; i++) {
+      for (std::size_t j = 0; j <= i; j++) {
         double total = i == j ? damping : 0.0;
         for (std::size_t k = 0; k < step_.size(); k++) total += used_[k] * jacobian_[k][i] * jacobian_[k][j];
-        for (int m = 0; m < j; m++) total -= factor[i][m] * factor[j][m];
-        // But for rounding, no pivot is less than the damping.
-        factor[i][j] = i == j ? std::sqrt(std::max(total, damping)) : total / factor[j][j];
+        square[6 * i + j] = total;
       }
     }
-    for (int i = 0; i < 6; i++) {
-      double total = error[i];
-      for (int m = 0; m < i; m++) total -= factor[i][m] * solved[m];
-      solved[i] = total / factor[i][i];
-    }
-    for (int i = 5; i >= 0; i--) {
-      double total = solved[i];
-      for (int m = i + 1; m < 6; m++) total -= factor[m][i] * solved[m];
-      solved[i] = total / factor[i][i];
-    }
+    Twist solved = error;
+    solve_damped({square, 6, 6}, solved, damping);
     for (std::size_t k = 0; k < step_.size(); k++) {
       double total = 0.0;
       for (int i = 0; i < 6; i++) total += jacobian_[k][i] * solved[i];

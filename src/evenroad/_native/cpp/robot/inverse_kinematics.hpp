@@ -20,8 +20,8 @@ enum class Turn : std::uint8_t { NOT, BY_AXIS, ALL };
 /// Where a tip is wanted, in the root's frame.
 struct PoseTask {
   Pose pose;
-  Point axis, direction;  // of the tip, and where it is to point: for Turn::BY_AXIS
-  bool placed;            // whether the origin counts
+  Vector axis, direction;  // of the tip, and where it is to point: for Turn::BY_AXIS
+  bool placed;             // whether the origin counts
   Turn turn;
   double position_tolerance, angle_tolerance;
 };

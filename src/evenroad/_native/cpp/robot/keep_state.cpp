@@ -12,11 +12,7 @@ using Turn9 = std::array<double, 9>;  // a rotation, row by row
 
 const double TURNED = 0.1 / std::sqrt(2.0);  // metres that an entry of a rotation counts
 
-double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Point cross(const double* a, const double* b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+Vector point_at(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
 /// Return a' b of two rotations.
 Turn9 between(const Turn9& a, const Turn9& b) {
@@ -28,17 +24,16 @@ Turn9 between(const Turn9& a, const Turn9& b) {
 }
 
 /// Return a' v.
-Point turned_back(const Turn9& a, const Point& v) {
+Vector turned_back(const Turn9& a, const Vector& v) {
   return {a[0] * v[0] + a[3] * v[1] + a[6] * v[2], a[1] * v[0] + a[4] * v[1] + a[7] * v[2],
           a[2] * v[0] + a[5] * v[1] + a[8] * v[2]};
 }
 
 /// Return how a rotation's entries change where it turns by w.
-Turn9 change(const Turn9& turn, const Point& w) {
+Turn9 change(const Turn9& turn, const Vector& w) {
   Turn9 changed;
   for (int j = 0; j < 3; j++) {
-    const double column[] = {turn[j], turn[3 + j], turn[6 + j]};
-    const Point moved = cross(w.data(), column);
+    const Vector moved = cross(w, {turn[j], turn[3 + j], turn[6 + j]});
     for (int i = 0; i < 3; i++) changed[3 * i + j] = moved[i];
   }
   return changed;
@@ -46,22 +41,23 @@ Turn9 change(const Turn9& turn, const Point& w) {
 
 /// The numbers of a circle by their names.
 struct Circle {
-  const double *centre, *along, *out, *across;
+  Vector centre, along, out, across;
   double radius;
-  const double *turn, *origin;
+  const double* turn;
+  Vector origin;
 
   explicit Circle(const std::vector<double>& numbers)
-      : centre(&numbers[0]),
-        along(&numbers[3]),
-        out(&numbers[6]),
-        across(&numbers[9]),
+      : centre(point_at(&numbers[0])),
+        along(point_at(&numbers[3])),
+        out(point_at(&numbers[6])),
+        across(point_at(&numbers[9])),
         radius(numbers[12]),
         turn(&numbers[13]),
-        origin(&numbers[22]) {}
+        origin(point_at(&numbers[22])) {}
 
   /// Return the door's angle at a place of the tip, and its distance from the hinge.
-  std::pair<double, double> polar(const Point& tip) const {
-    const double gap[] = {tip[0] - centre[0], tip[1] - centre[1], tip[2] - centre[2]};
+  std::pair<double, double> polar(const Vector& tip) const {
+    const Vector gap = tip - centre;
     const double x = dot(gap, out), y = dot(gap, across);
     return {std::atan2(y, x), std::max(std::sqrt(x * x + y * y), 1e-9)};
   }
@@ -71,18 +67,13 @@ struct Circle {
     const double sine = std::sin(angle), versine = 1.0 - std::cos(angle);
     Turn9 turned;
     for (int j = 0; j < 3; j++) {
-      const double column[] = {turn[j], turn[3 + j], turn[6 + j]};
-      const Point once = cross(along, column), twice = cross(along, once.data());
+      const Vector column = {turn[j], turn[3 + j], turn[6 + j]};
+      const Vector once = cross(along, column), twice = cross(along, once);
       for (int i = 0; i < 3; i++) turned[3 * i + j] = column[i] + sine * once[i] + versine * twice[i];
     }
     return turned;
   }
 };
-
-/// Return the way from one tip to another.
-Point offset(const Pose& a, const Pose& b) {
-  return {b.origin[0] - a.origin[0], b.origin[1] - a.origin[1], b.origin[2] - a.origin[2]};
-}
 
 }  // namespace
 
@@ -108,7 +99,7 @@ void KeepState::write_residual(const Keep& keep, std::span<double> to) const {
         const double* numbers = &keep.numbers[13 * row];
         double total = 0.0;
         for (int k = 0; k < 9; k++) total += numbers[k] * tip.rotation[k];
-        to[row] = total + dot(numbers + 9, tip.origin.data()) - numbers[12];
+        to[row] = total + dot(point_at(numbers + 9), tip.origin) - numbers[12];
       }
       return;
     }
@@ -123,17 +114,15 @@ void KeepState::write_residual(const Keep& keep, std::span<double> to) const {
       const Pose& tip = tips_[keep.first];
       const auto [angle, far] = circle.polar(tip.origin);
       const Turn9 door = circle.door(angle);
-      const double rise[] = {tip.origin[0] - circle.origin[0], tip.origin[1] - circle.origin[1],
-                             tip.origin[2] - circle.origin[2]};
       to[0] = far - circle.radius;
-      to[1] = dot(rise, circle.along);
+      to[1] = dot(tip.origin - circle.origin, circle.along);
       for (int k = 0; k < 9; k++) to[2 + k] = TURNED * (tip.rotation[k] - door[k]);
       return;
     }
     case KeepKind::TOGETHER: {
       const Pose &a = tips_[keep.first], &b = tips_[keep.second];
       const Turn9 turn = between(a.rotation, b.rotation);
-      const Point gap = turned_back(a.rotation, offset(a, b));
+      const Vector gap = turned_back(a.rotation, b.origin - a.origin);
       for (int k = 0; k < 3; k++) to[k] = gap[k] - keep.numbers[9 + k];
       for (int k = 0; k < 9; k++) to[3 + k] = TURNED * (turn[k] - keep.numbers[k]);
       return;
@@ -153,14 +142,14 @@ void KeepState::write_column(const Keep& keep, std::size_t joint, std::span<doub
       const Turn9 changed = change(tips_[keep.first].rotation, turned);
       for (std::size_t row = 0; row < keep.rows; row++) {
         const double* numbers = &keep.numbers[13 * row];
-        double total = dot(numbers + 9, moved.data());
+        double total = dot(point_at(numbers + 9), moved);
         for (int k = 0; k < 9; k++) total += numbers[k] * changed[k];
         to[row] = total;
       }
       return;
     }
     case KeepKind::BOX: {
-      const Point moved = twist(keep.first, joint).first;
+      const Vector moved = twist(keep.first, joint).first;
       for (int k = 0; k < 3; k++) {
         const double at = tips_[keep.first].origin[k];
         to[k] = at < keep.numbers[k] || at > keep.numbers[3 + k] ? moved[k] : 0.0;
@@ -172,14 +161,11 @@ void KeepState::write_column(const Keep& keep, std::size_t joint, std::span<doub
       const Pose& tip = tips_[keep.first];
       const auto [angle, far] = circle.polar(tip.origin);
       const auto [moved, turned] = twist(keep.first, joint);
-      Point radial;
-      for (int k = 0; k < 3; k++) radial[k] = std::cos(angle) * circle.out[k] + std::sin(angle) * circle.across[k];
-      const Point tangent = cross(circle.along, radial.data());
-      const double swing = dot(tangent.data(), moved.data()) / far;
-      const Point of_door = {circle.along[0] * swing, circle.along[1] * swing, circle.along[2] * swing};
-      const Turn9 own = change(tip.rotation, turned), door = change(circle.door(angle), of_door);
-      to[0] = dot(radial.data(), moved.data());
-      to[1] = dot(circle.along, moved.data());
+      const Vector radial = circle.out * std::cos(angle) + circle.across * std::sin(angle);
+      const double swing = dot(cross(circle.along, radial), moved) / far;
+      const Turn9 own = change(tip.rotation, turned), door = change(circle.door(angle), circle.along * swing);
+      to[0] = dot(radial, moved);
+      to[1] = dot(circle.along, moved);
       for (int k = 0; k < 9; k++) to[2 + k] = TURNED * (own[k] - door[k]);
       return;
     }
@@ -187,13 +173,8 @@ void KeepState::write_column(const Keep& keep, std::size_t joint, std::span<doub
       const Pose &a = tips_[keep.first], &b = tips_[keep.second];
       const auto [a_moved, a_turned] = twist(keep.first, joint);
       const auto [b_moved, b_turned] = twist(keep.second, joint);
-      const Point away = offset(a, b), carried = cross(away.data(), a_turned.data());
-      Point moved, turned;
-      for (int k = 0; k < 3; k++) {
-        moved[k] = b_moved[k] - a_moved[k] + carried[k];
-        turned[k] = b_turned[k] - a_turned[k];
-      }
-      const Point gap = turned_back(a.rotation, moved);
+      const Vector moved = b_moved - a_moved + cross(b.origin - a.origin, a_turned), turned = b_turned - a_turned;
+      const Vector gap = turned_back(a.rotation, moved);
       const Turn9 changed = change(between(a.rotation, b.rotation), turned_back(a.rotation, turned));
       for (int k = 0; k < 3; k++) to[k] = gap[k];
       for (int k = 0; k < 9; k++) to[3 + k] = TURNED * changed[k];
@@ -206,7 +187,7 @@ void KeepState::write_column(const Keep& keep, std::size_t joint, std::span<doub
   }
 }
 
-std::pair<Point, Point> KeepState::twist(std::size_t tip, std::size_t joint) const {
+std::pair<Vector, Vector> KeepState::twist(std::size_t tip, std::size_t joint) const {
   const std::vector<double>& rows = moves_[tip];
   const std::size_t dim = q_.size();
   return {{rows[joint], rows[dim + joint], rows[2 * dim + joint]},

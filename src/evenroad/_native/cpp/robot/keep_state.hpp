@@ -26,7 +26,7 @@ class KeepState {
 
  private:
   /// How a tip moves and turns with a joint.
-  std::pair<Point, Point> twist(std::size_t tip, std::size_t joint) const;
+  std::pair<Vector, Vector> twist(std::size_t tip, std::size_t joint) const;
 
   const Keeps& keeps_;
   std::span<const double> q_;

@@ -5,21 +5,11 @@
 
 namespace evenroad::robot {
 
-std::size_t Keeps::rows() const {
-  std::size_t total = 0;
-  for (const Keep& keep : each) total += keep.rows;
-  return total;
-}
-
 void Keeps::write_residuals(Matrix<const double> q, Matrix<double> residuals) const {
   KeepState state(*this);
   for (std::size_t i = 0; i < q.rows; i++) {
     state.move_to(q[i]);
-    std::size_t row = 0;
-    for (const Keep& keep : each) {
-      state.write_residual(keep, residuals[i].subspan(row, keep.rows));
-      row += keep.rows;
-    }
+    for (const Keep& keep : each) state.write_residual(keep, keep.of(residuals[i]));
   }
 }
 
@@ -27,26 +17,22 @@ void Keeps::write_derivative(std::span<const double> q, Matrix<double> derivativ
   KeepState state(*this);
   state.move_to(q);
   state.derive();
-  std::vector<double> column;
+  std::vector<double> column(rows());
   for (std::size_t joint = 0; joint < dim(); joint++) {
-    std::size_t row = 0;
-    for (const Keep& keep : each) {
-      column.resize(keep.rows);
-      state.write_column(keep, joint, column);
-      for (const double entry : column) derivative(row++, joint) = entry;
-    }
+    for (const Keep& keep : each) state.write_column(keep, joint, keep.of(column));
+    for (std::size_t row = 0; row < column.size(); row++) derivative(row, joint) = column[row];
   }
 }
 
 void Keeps::write_shares(Matrix<const double> q, Matrix<double> shares) const {
   KeepState state(*this);
-  std::vector<double> residual;
+  std::vector<double> residual(rows());
   for (std::size_t i = 0; i < q.rows; i++) {
     state.move_to(q[i]);
     for (std::size_t k = 0; k < each.size(); k++) {
-      residual.resize(each[k].rows);
-      state.write_residual(each[k], residual);
-      shares(i, k) = length_of(residual) / each[k].limit;
+      const std::span<double> own = each[k].of(residual);
+      state.write_residual(each[k], own);
+      shares(i, k) = length_of(own) / each[k].limit;
     }
   }
 }

@@ -27,7 +27,10 @@ struct Keep {
   std::size_t first, second;  // numbers of the chains of its tips
   double limit;               // largest length of the residual
   std::vector<double> numbers;
-  std::size_t rows;  // of the residual
+  std::size_t row, rows;  // of the residual, among those of all constraints
+
+  /// Return its part of a column of all residuals.
+  std::span<double> of(std::span<double> all) const { return all.subspan(row, rows); }
 };
 
 /// How a projection ends: shares of limits that it aims at, and that are enough; steps, and the longest of a joint.
@@ -44,7 +47,7 @@ struct Keeps {
 
   std::size_t dim() const { return low.size(); }
   /// Length of all residuals together.
-  std::size_t rows() const;
+  std::size_t rows() const { return each.empty() ? 0 : each.back().row + each.back().rows; }
 
   /// Write the residuals of configurations, (n, dim): (n, rows).
   void write_residuals(Matrix<const double> q, Matrix<double> residuals) const;

@@ -54,8 +54,7 @@ Mask not_separated_across(Vec3 normal, const PlacedHulls& first, const PlacedHul
   if ((normal.x == 0 && normal.y == 0 && normal.z == 0) || a.points.size() == 0 || b.points.size() == 0) return asked;
   const Vec3x16 seen = spread(normal);
   const PlacedFrame &here = first.frame, &there = second.frame;
-  const Vec3x16 along = {dot(there.rows[0], seen), dot(there.rows[1], seen), dot(there.rows[2], seen)};
-  const Vec3x16 back = -combine(here.rows[0], along.x, here.rows[1], along.y, here.rows[2], along.z);
+  const Vec3x16 along = there.turned(seen), back = -here.turned_back(along);
   // How far the first may reach towards the second.
   const Floats16 most_reach =
       dot(along, here.origin - there.origin) - (spread(reach_along(normal, second.tree, b) + a.width + b.width) + near);
@@ -77,10 +76,8 @@ Decided decided_by(const Kept& kept, const PlacedHulls& first, const PlacedHulls
   const Mask left = not_separated_across(kept.normal, first, second, spread(margin) + loss, asked);
   if (!kept.has_point || left == 0) return {asked & ~left, 0};
   const PlacedFrame &here = first.frame, &there = second.frame;
-  const Vec3x16 p = spread(kept.point);
-  const Vec3x16 point =
-      Vec3x16{dot(here.rows[0], p), dot(here.rows[1], p), dot(here.rows[2], p)} + (here.origin - there.origin);
-  const Vec3x16 seen = abs(combine(there.rows[0], point.x, there.rows[1], point.y, there.rows[2], point.z));
+  const Vec3x16 point = here.turned(spread(kept.point)) + (here.origin - there.origin);
+  const Vec3x16 seen = abs(there.turned_back(point));
   Vec3x16 gap = seen - spread3(b.extents);
   if (b.disc > 0) gap.x = gap.y = sqrt(fma(seen.x, seen.x, seen.y * seen.y)) - b.disc;
   const Floats16 near = spread(margin + b.width) - loss, zero{};

@@ -12,11 +12,6 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Return directions of the scene as a body sees them.
-EVENROAD_INLINE Vec3x16 seen_by(const PlacedFrame& body, Vec3x16 v) {
-  return combine(body.rows[0], v.x, body.rows[1], v.y, body.rows[2], v.z);
-}
-
 EVENROAD_INLINE Floats16 sum(Vec3x16 v) { return v.x + v.y + v.z; }
 
 /// Triangles as a body sees them: their corners, of the second and third the ways to them, the boxes around them, and
@@ -54,12 +49,12 @@ struct SeenTriangles {
 
 SeenTriangles seen_by(const PlacedFrame& body, const TriangleLeaf& leaf, float reach, float near) {
   const Vec3x16 from = leaf.corner - body.origin;
-  SeenTriangles all{seen_by(body, from),
-                    seen_by(body, leaf.first),
-                    seen_by(body, leaf.second),
+  SeenTriangles all{body.turned_back(from),
+                    body.turned_back(leaf.first),
+                    body.turned_back(leaf.second),
                     {},
                     {},
-                    seen_by(body, leaf.normal),
+                    body.turned_back(leaf.normal),
                     {},
                     {},
                     {}};
@@ -85,8 +80,8 @@ ShapeAt::ShapeAt(const HullTree<float>& tree, int root, const PlacedFrame& frame
     rotation_[axis] = x, rotation_[3 + axis] = y, rotation_[6 + axis] = z;
   }
   frame_.origin = spread(lane_of(frames.origin, lane));
-  HullNode<float> node{{-1, -1}, {0, 3}, {}, {}, {}, 0, 0, 0, {}, {}, false};
-  node.width = wide;
+  HullNode<float> node;
+  node.points = {0, 3}, node.width = wide;
   triangle_.nodes.push_back(node);
   triangle_.points.resize(3);
 }
@@ -95,7 +90,7 @@ Mask ShapeAt::near(const BoxNode& node) const {
   const HullNode<float>& body = tree_.nodes[root_];
   const Vec3x16 from = node.centre - frame_.origin, x = abs(frame_.rows[0]), y = abs(frame_.rows[1]);
   const Vec3x16 half = combine(x, node.half.x, y, node.half.y, abs(frame_.rows[2]), node.half.z);
-  const Floats16 gap = largest(abs(seen_by(frame_, from) - spread3(body.centre)) - half - spread3(body.half));
+  const Floats16 gap = largest(abs(frame_.turned_back(from) - spread3(body.centre)) - half - spread3(body.half));
   const Floats16 near = margin_ + triangle_.nodes[0].width + (sum(abs(from)) + sum(node.half) + reach_) * SLACK;
   return below_zero(gap - near);
 }
@@ -149,7 +144,7 @@ bool ShapeAt::meets(int hull, const TriangleLeaf& leaf, int lane) {
 }
 
 bool ShapeAt::encloses_corner(const TriangleLeaf& leaf, Mask asked) const {
-  const Vec3x16 seen = seen_by(frame_, leaf.corner - frame_.origin);
+  const Vec3x16 seen = frame_.turned_back(leaf.corner - frame_.origin);
   for (; asked != 0; asked &= asked - 1) {
     const int k = std::countr_zero(asked);
     if (encloses(tree_, root_, {seen.x[k], seen.y[k], seen.z[k]})) return true;

@@ -71,13 +71,9 @@ bool motion_free(Workspace& workspace, std::span<const double> a, std::span<cons
   return are_free(workspace, first_known ? 1 : 0, motion.segments - (last_known ? 1 : 0), false);
 }
 
-bool motion_free_coarsely(Workspace& workspace, std::span<const double> a, std::span<const double> b) {
-  take(workspace, a, b);
-  return are_free(workspace, 1, workspace.motion.segments - 1, true);
-}
-
 bool is_shortcut(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits) {
-  return motion_free_coarsely(workspace, a, b) && motion_proved(workspace, a, b, limits);
+  take(workspace, a, b);
+  return are_free(workspace, 1, workspace.motion.segments - 1, true) && motion_proved(workspace, a, b, limits);
 }
 
 void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const double> b, double tolerance,

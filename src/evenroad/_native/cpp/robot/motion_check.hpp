@@ -21,9 +21,6 @@ struct ProofLimits {
 /// the motion; the others follow in stretches of sixteen neighbours, halves before quarters before eighths.
 bool motion_free(Workspace& workspace, std::span<const double> a, std::span<const double> b, Known known);
 
-/// Return whether no more than sixteen states of a motion between free ends are free: enough before a proof.
-bool motion_free_coarsely(Workspace& workspace, std::span<const double> a, std::span<const double> b);
-
 /// Return whether the motion from `a` to `b`, within bounds, is proved free: throughout, not at states alone.
 bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits);
 
@@ -32,7 +29,7 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
 /// Bodies are enlarged by what the longest of them moves, so others may be free, too.  None is where one is long.
 Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const double> b, double tolerance);
 
-/// Return whether a motion between free ends is free coarsely, and proved.
+/// Return whether a motion between free ends is free at sixteen of its states at most, and then proved.
 bool is_shortcut(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits);
 
 /// Write which motions, from rows of `a` to those of `b`, are free at both ends and at states between; where the

@@ -7,19 +7,6 @@ namespace evenroad::robot {
 
 namespace {
 
-EVENROAD_INLINE Vectors operator+(const Vectors& a, const Vectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-EVENROAD_INLINE Vectors operator*(const Vectors& a, double b) { return {a.x * b, a.y * b, a.z * b}; }
-
-EVENROAD_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-EVENROAD_INLINE Vectors cross(const Vectors& a, const Point& b) {
-  return {a.y * b[2] - a.z * b[1], a.z * b[0] - a.x * b[2], a.x * b[1] - a.y * b[0]};
-}
-EVENROAD_INLINE Vectors cross(const Point& a, const Vectors& b) {
-  return {a[1] * b.z - a[2] * b.y, a[2] * b.x - a[0] * b.z, a[0] * b.y - a[1] * b.x};
-}
-
 /// Return a matrix times vectors.
 EVENROAD_INLINE Vectors times(const std::array<double, 9>& m, const Vectors& v) {
   return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
@@ -89,7 +76,7 @@ void MovingStates::move_to(std::span<const States> q) {
   }
 }
 
-void MovingStates::move(std::span<const States> velocity, std::span<const States> acceleration, const Point& pulled) {
+void MovingStates::move(std::span<const States> velocity, std::span<const States> acceleration, const Vector& pulled) {
   const Vectors falling{all<States>(pulled[0]), all<States>(pulled[1]), all<States>(pulled[2])};
   const Motion root{{}, {}, falling};
   for (std::size_t i = 0; i < links_.links.size(); i++) {
@@ -121,7 +108,7 @@ void MovingStates::move(std::span<const States> velocity, std::span<const States
   }
 }
 
-Vectors MovingStates::acceleration(std::size_t link, const Point& point) const {
+Vectors MovingStates::acceleration(std::size_t link, const Vector& point) const {
   const Motion& motion = motions_[link];
   return motion.pushed + cross(motion.turned, point) + cross(motion.turn, cross(motion.turn, point));
 }
@@ -157,7 +144,7 @@ void read_rows(Matrix<const double> rows, std::size_t first, std::span<States> c
 }
 
 void write_torques(const MovingLinks& links, Matrix<const double> q, Matrix<const double> velocity,
-                   Matrix<const double> acceleration, const Point& pulled, Matrix<double> torques) {
+                   Matrix<const double> acceleration, const Vector& pulled, Matrix<double> torques) {
   std::vector<States> here(links.dim), rates(links.dim), pushes(links.dim), needed(links.dim);
   MovingStates states(links);
   for (std::size_t first = 0; first < q.rows; first += STATES) {

@@ -20,7 +20,7 @@ struct MovingLink {
   ChainJoint joint;
   int parent;  // below its own number; -1 is the root, which stands still
   double mass;
-  Point centre;                   // of the mass
+  Vector centre;                  // of the mass
   std::array<double, 9> inertia;  // about the centre, row by row
 };
 
@@ -38,6 +38,20 @@ struct Vectors {
   States x{}, y{}, z{};
 };
 
+EVENROAD_INLINE Vectors operator+(const Vectors& a, const Vectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+EVENROAD_INLINE Vectors operator*(const Vectors& a, double b) { return {a.x * b, a.y * b, a.z * b}; }
+
+EVENROAD_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+EVENROAD_INLINE Vectors cross(const Vectors& a, const Vector& b) {
+  return {a.y * b[2] - a.z * b[1], a.z * b[0] - a.x * b[2], a.x * b[1] - a.y * b[0]};
+}
+EVENROAD_INLINE Vectors cross(const Vector& a, const Vectors& b) {
+  return {a[1] * b.z - a[2] * b.y, a[2] * b.x - a[0] * b.z, a[0] * b.y - a[1] * b.x};
+}
+EVENROAD_INLINE States dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
 /// Eight states of a robot's links.
 class MovingStates {
  public:
@@ -47,10 +61,10 @@ class MovingStates {
   void move_to(std::span<const States> q);
 
   /// Take velocities, none for links that stand still, and accelerations, (dim,); the root is accelerated by `pulled`.
-  void move(std::span<const States> velocity, std::span<const States> acceleration, const Point& pulled);
+  void move(std::span<const States> velocity, std::span<const States> acceleration, const Vector& pulled);
 
   /// Return how a point of a link is accelerated, along the link's axes.
-  Vectors acceleration(std::size_t link, const Point& point) const;
+  Vectors acceleration(std::size_t link, const Vector& point) const;
 
   /// Write the torques, (dim,), that this motion needs.
   void write_torques(std::span<States> torques);
@@ -76,6 +90,6 @@ void read_rows(Matrix<const double> rows, std::size_t first, std::span<States> c
 
 /// Write the torques of states, (n, dim) each, where the root is accelerated by `pulled`.
 void write_torques(const MovingLinks& links, Matrix<const double> q, Matrix<const double> velocity,
-                   Matrix<const double> acceleration, const Point& pulled, Matrix<double> torques);
+                   Matrix<const double> acceleration, const Vector& pulled, Matrix<double> torques);
 
 }  // namespace evenroad::robot

@@ -75,8 +75,7 @@ Mask inside_meeting(const Robot& robot, const PlacedRobot& placed, const Body& b
   Mask meeting = 0;
   for (int i = body.inside.first; i < body.inside.end; i++) {
     const auto& [centre, radius] = robot.inside[i];
-    const Vec3x16 p = spread(centre);
-    const Vec3x16 here = origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
+    const Vec3x16 here = origin + frame.turned(spread(centre));
     const float reach = radius + near + obstacle.rounding;
     meeting |= asked & below_zero(squared_distance(obstacle, here) - reach * reach);
     if (meeting == asked || is_enough(meeting, wanted)) break;
@@ -87,8 +86,7 @@ Mask inside_meeting(const Robot& robot, const PlacedRobot& placed, const Body& b
 Mask shape_enclosing(const Robot& robot, const PlacedRobot& placed, const Body& body, Vec3x16 point, Mask asked) {
   if (!body.encloses) return 0;
   const PlacedFrame& frame = placed.frames[body.frame];
-  const Vec3x16 from = point - frame.origin;
-  const Vec3x16 here = combine(frame.rows[0], from.x, frame.rows[1], from.y, frame.rows[2], from.z);
+  const Vec3x16 here = frame.turned_back(point - frame.origin);
   Mask inside = 0;
   for (; asked != 0; asked &= asked - 1) {
     const int lane = std::countr_zero(asked);

@@ -50,12 +50,6 @@ EVENROAD_INLINE Floats16 values_of(const Frame& frame, const Doubles16& coordina
   return __builtin_convertvector(value, Floats16);
 }
 
-/// Return the product of a frame's rotation, rows in lanes, and a point.
-EVENROAD_INLINE Vec3x16 turned(const PlacedFrame& frame, Vec3 point) {
-  const Vec3x16 p = spread(point);
-  return {dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
-}
-
 void write_frames(const Robot& robot, std::span<const Doubles16> states, std::vector<PlacedFrame>& frames) {
   for (std::size_t i = 0; i < robot.frames.size(); i++) {
     const Frame& frame = robot.frames[i];
@@ -64,7 +58,7 @@ void write_frames(const Robot& robot, std::span<const Doubles16> states, std::ve
     const Floats16 value = values_of(frame, states[frame.coordinate]);
     const SineAndCosine angle = sine_and_cosine(value);
     const float* r = frame.rotation;
-    here.origin = below.origin + turned(below, frame.translation);
+    here.origin = below.origin + below.turned(spread(frame.translation));
     for (int row = 0; row < 3; row++) {
       const Vec3x16 from = below.rows[row];
       const Floats16 x = dot(from, spread(Vec3{r[0], r[3], r[6]})), y = dot(from, spread(Vec3{r[1], r[4], r[7]}));
@@ -91,12 +85,12 @@ void write_bodies(const Robot& robot, const Lengths& lengths, Range bodies, Plac
     const Body& body = robot.bodies[b];
     const PlacedFrame frame = placed.frames[body.frame];
     PlacedBody& here = placed.bodies[b];
-    here.centre = frame.origin + turned(frame, body.centre);
+    here.centre = frame.origin + frame.turned(spread(body.centre));
     if (body.capsules.size() > FEW) here.half = box_around(frame, lengths.bodies[b].half);
     for (int i = body.capsules.first; i < body.capsules.end; i++) {
       const Capsule& capsule = robot.capsules[i];
-      placed.capsules[i].centre = frame.origin + turned(frame, capsule.centre);
-      if (!capsule.is_ball) placed.capsules[i].half = turned(frame, capsule.half);
+      placed.capsules[i].centre = frame.origin + frame.turned(spread(capsule.centre));
+      if (!capsule.is_ball) placed.capsules[i].half = frame.turned(spread(capsule.half));
     }
   }
 }

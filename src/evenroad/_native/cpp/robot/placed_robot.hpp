@@ -13,6 +13,10 @@ using Doubles16 = Lanes<double, 16>;
 struct PlacedFrame {
   Vec3x16 rows[3];  // of its rotation
   Vec3x16 origin;
+
+  /// Return directions of this frame as the root's frame sees them, and the other way round.
+  EVENROAD_INLINE Vec3x16 turned(Vec3x16 v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
+  EVENROAD_INLINE Vec3x16 turned_back(Vec3x16 v) const { return combine(rows[0], v.x, rows[1], v.y, rows[2], v.z); }
 };
 
 /// Return places of segments `centre + s half` cut to the segments, s from -1 to 1.

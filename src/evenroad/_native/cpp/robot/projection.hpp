@@ -25,8 +25,8 @@ class Projection {
   /// Keep of all residuals what is to be taken off; return whether all are short enough.
   bool measure();
   void write_columns();
-  /// Write the step that takes the error off, by Cholesky's factor of J' J + damping.
-  void solve(double damping);
+  /// Write the step that takes the error off, damped by a weight times the square of the error.
+  void solve(double weight);
 
   const Keeps& keeps_;
   const Projecting& how_;

@@ -37,7 +37,7 @@ void require(bool holds, const char* text) {
 
 Vec3 single(const double* v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])}; }
 
-double norm(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+double length_of_three(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 std::vector<Frame> make_frames(const GivenRobot& given, std::size_t dim) {
   const auto& from = given.frames;
@@ -97,7 +97,7 @@ Ball ball_around(const Shapes& shapes, Range capsules) {
       for (int axis = 0; axis < 3; axis++) {
         offset[axis] = shapes.centre(i)[axis] + side * shapes.half(i)[axis] - ball.centre[axis];
       }
-      ball.radius = std::max(ball.radius, norm(offset) + shapes.radius(i));
+      ball.radius = std::max(ball.radius, length_of_three(offset) + shapes.radius(i));
     }
   }
   return ball;
@@ -132,7 +132,7 @@ void add_capsules(Robot& robot, const GivenRobot& given) {
                 from.first_sample[i + 1] <= static_cast<std::int64_t>(from.samples.size()),
             "capsules.first_sample must rise, within capsules.samples");
     const Vec3 half = single(from.half.data() + 3 * i);
-    const double length = norm(from.half.data() + 3 * i);
+    const double length = length_of_three(from.half.data() + 3 * i);
     robot.capsules.push_back({static_cast<int>(from.body[i]), single(from.centre.data() + 3 * i), half,
                               half.x == 0 && half.y == 0 && half.z == 0, Shapes{given}.samples(static_cast<int>(i)),
                               static_cast<float>(length),
@@ -162,14 +162,9 @@ std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
   std::vector<Ball> balls;
   int capsule = 0;
   for (std::size_t b = 0; b < count; b++) {
-    Body body{index(given.bodies.frame[b], robot.frames.size() + 1, "bodies.frame"),
-              {capsule, capsule},
-              {},
-              -1,
-              -1,
-              false,
-              {},
-              {}};
+    Body body;
+    body.frame = index(given.bodies.frame[b], robot.frames.size() + 1, "bodies.frame");
+    body.capsules.first = capsule;
     if (given.bodies.hulls[b] >= 0) body.hulls = roots[index(given.bodies.hulls[b], roots.size(), "bodies.hulls")];
     const auto& owner = given.capsules.body;
     while (capsule < static_cast<int>(owner.size()) && owner[capsule] == static_cast<std::int64_t>(b)) capsule++;
@@ -235,7 +230,7 @@ void add_pairs(Robot& robot, const GivenRobot& given, const std::vector<Ball>& b
     const int begin = static_cast<int>(robot.pairs.size());
     for (int i = first.first; i < first.end; i++) {
       for (int k = second.first; k < second.end; k++) {
-        const double e = norm(shapes.half(i)), f = norm(shapes.half(k));
+        const double e = length_of_three(shapes.half(i)), f = length_of_three(shapes.half(k));
         const double reach = shapes.radius(i) + shapes.radius(k) + 2.0 * given.padding;
         const auto one_by = [](double square) { return static_cast<float>(square > 0.0 ? 1.0 / square : 0.0); };
         robot.pairs.push_back({i, k, one_by(e * e), one_by(f * f)});

@@ -37,9 +37,9 @@ struct Body {
   int frame;
   Range capsules;
   Vec3 centre;               // of a ball and of a box around its capsules
-  int hulls;                 // root of its tree of hulls, or -1
-  int shape;                 // root of the parts of its true shape, or -1: its capsules are
-  bool encloses;             // whether surfaces of the shape have an inside
+  int hulls = -1;            // root of its tree of hulls, or -1
+  int shape = -1;            // root of the parts of its true shape, or -1: its capsules are
+  bool encloses = false;     // whether surfaces of the shape have an inside
   std::vector<Vec3> points;  // one of each part of the shape that hangs together
   Range inside;              // of the balls inside of its true shape
 };

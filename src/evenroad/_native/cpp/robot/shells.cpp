@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "robot/surface_grid.hpp"
+#include "robot/vector.hpp"
 
 namespace evenroad::robot {
 
@@ -17,9 +18,8 @@ constexpr double CELLS_OF_SHELL = 100'000;  // of a grid that triangles of a she
 
 /// Return six times the volume of a tetrahedron, with its sign.
 double volume_of(const double* a, const double* b, const double* c, const double* d) {
-  double u[3], v[3], w[3];
-  for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], w[k] = d[k] - a[k];
-  return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
+  const auto from_a = [a](const double* to) { return Vector{to[0] - a[0], to[1] - a[1], to[2] - a[2]}; };
+  return dot(from_a(b), cross(from_a(c), from_a(d)));
 }
 
 /// Return whether a segment passes through a triangle, not along it.
@@ -31,7 +31,7 @@ bool passes(const double* from, const double* to, const double* t) {
   return (a > 0) == (b > 0) && (b > 0) == (c > 0);
 }
 
-bool cross(const double* one, const double* other) {
+bool do_triangles_cross(const double* one, const double* other) {
   for (int axis = 0; axis < 3; axis++) {
     if (std::min({one[axis], one[3 + axis], one[6 + axis]}) >
             std::max({other[axis], other[3 + axis], other[6 + axis]}) ||
@@ -85,7 +85,7 @@ struct Sorted {
 };
 
 /// Return whether a triangle of one shell crosses one of another.
-bool cross(const Shell& one, const Shell& other) {
+bool do_shells_cross(const Shell& one, const Shell& other) {
   double low[3], high[3];
   for (int axis = 0; axis < 3; axis++) {
     low[axis] = std::max(one.low[axis], other.low[axis]), high[axis] = std::min(one.high[axis], other.high[axis]);
@@ -96,7 +96,7 @@ bool cross(const Shell& one, const Shell& other) {
   for (std::size_t i = 0; i < one.triangles.size() && !found; i += 9) {
     sorted.cells(&one.triangles[i], [&](int cell) {
       for (int k = sorted.begin[cell]; k < sorted.begin[cell + 1] && !found; k++) {
-        found = cross(&one.triangles[i], &other.triangles[sorted.triangles[k]]);
+        found = do_triangles_cross(&one.triangles[i], &other.triangles[sorted.triangles[k]]);
       }
     });
   }
@@ -117,7 +117,7 @@ std::optional<int> solid_around(std::span<const Shell> shells, std::span<const i
   const Shell& shell = shells[number];
   int found = -1;
   for (const int other : larger) {
-    if (cross(shell, shells[other])) return std::nullopt;
+    if (do_shells_cross(shell, shells[other])) return std::nullopt;
     if (!is_box_within(shell, shells[other])) continue;
     const double point[3] = {shell.triangles[0], shell.triangles[1], shell.triangles[2]};
     // They come from the largest to the smallest.

@@ -1,25 +1,9 @@
-// Vectors of three in double precision, and what of up to four points is nearest to the origin.
+// What of up to four points is nearest to the origin.
 #pragma once
 
+#include "robot/vector.hpp"
+
 namespace evenroad::robot {
-
-struct Vector {
-  double at[3];
-  double& operator[](int axis) { return at[axis]; }
-  double operator[](int axis) const { return at[axis]; }
-};
-
-inline Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Vector operator*(const Vector& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-
-inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-inline Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-inline double squared_length(const Vector& v) { return dot(v, v); }
 
 /// Up to four points of the difference of two hulls.
 struct Simplex {

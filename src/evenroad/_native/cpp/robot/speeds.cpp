@@ -106,9 +106,7 @@ void Speeds::take_here(const Robot& robot, const PlacedRobot& placed, std::span<
     const HullNode<float>& root = robot.shapes.nodes[body.shape];
     const auto& [along, turning] = velocities_[body.frame];
     const PlacedFrame& frame = placed.frames[body.frame];
-    const Vec3x16 from = spread3(root.centre);
-    const Vec3x16 middle =
-        along + cross(turning, {dot(frame.rows[0], from), dot(frame.rows[1], from), dot(frame.rows[2], from)});
+    const Vec3x16 middle = along + cross(turning, frame.turned(spread3(root.centre)));
     const double here = largest_root(dot(middle, middle)) + root.radius * largest_root(dot(turning, turning));
     shapes[b] = std::min(shapes[b], here + half * shape_accelerations_[b] + lost);
   }

@@ -120,8 +120,7 @@ Mask inside_touching(const ShapeNear& of, const Surface& surface, Mask asked) {
     const float reach = radius + of.near + surface.radius;
     // Of smaller ones no cell tells.
     if (reach <= surface.grid.excess) continue;
-    const Vec3x16 p = spread(centre);
-    const Vec3x16 here = frame.origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
+    const Vec3x16 here = frame.origin + frame.turned(spread(centre));
     touching |= asked & query(surface.grid, here, 0, reach).sure;
   }
   return touching;
@@ -144,8 +143,7 @@ Mask shape_touching(const ShapeNear& of, const Surface& surface, float reach, Ma
   if (surface.windings.empty()) return meeting;
   const PlacedFrame& frame = of.placed.frames[of.body.frame];
   for (const Vec3& point : of.body.points) {
-    const Vec3x16 p = spread(point);
-    const Vec3x16 at = frame.origin + Vec3x16{dot(frame.rows[0], p), dot(frame.rows[1], p), dot(frame.rows[2], p)};
+    const Vec3x16 at = frame.origin + frame.turned(spread(point));
     for (Mask left = asked & ~meeting; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
       if (is_inside(surface, lane_of(at, lane))) meeting |= 1U << lane;

@@ -12,9 +12,9 @@ namespace evenroad::trajectory {
 namespace {
 
 using robot::MovingStates;
-using robot::Point;
 using robot::States;
 using robot::STATES;
+using robot::Vector;
 using robot::Vectors;
 
 /// Number of directions in which a tip's acceleration is limited.
@@ -23,7 +23,6 @@ constexpr std::size_t SIDES = 8;
 /// Lengths below this are none [m].
 constexpr double NO_LENGTH = 1e-12;
 
-States dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 States squared(const Vectors& a) { return dot(a, a); }
 
 /// Eight rows of configurations, velocities and accelerations.

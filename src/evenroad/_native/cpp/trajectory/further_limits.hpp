@@ -14,17 +14,17 @@ namespace evenroad::trajectory {
 struct TorqueLimits {
   robot::MovingLinks links;
   std::vector<double> efforts;
-  robot::Point gravity;
+  robot::Vector gravity;
 
   /// Return what the root is accelerated by, which is as good as gravity.
-  robot::Point upwards() const { return {-gravity[0], -gravity[1], -gravity[2]}; }
+  robot::Vector upwards() const { return {-gravity[0], -gravity[1], -gravity[2]}; }
 };
 
 /// Largest speed and acceleration of a point that is fixed to a link; infinite where there is no limit.
 struct TipLimits {
   robot::MovingLinks links;
   std::size_t link;
-  robot::Point point;
+  robot::Vector point;
   double speed, acceleration;
 };
 

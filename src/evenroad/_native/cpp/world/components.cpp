@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/disjoint_sets.hpp"
 #include "common/time_limit.hpp"
 
 namespace evenroad::world {
@@ -70,17 +71,10 @@ Opened open_parts(const Disk& disk, std::int64_t row, std::int64_t column) {
   return opened;
 }
 
-std::int32_t root_of(std::int32_t node, std::vector<std::int32_t>& parent) {
-  while (parent[node] != node) node = parent[node] = parent[parent[node]];
-  return node;
-}
-
 /// Join two places, -1 for none, of which both may have a free point.
-void unite(std::int64_t a, std::int64_t b, std::vector<std::int32_t>& parent) {
+void join(std::vector<std::int32_t>& parent, std::int64_t a, std::int64_t b) {
   if (a < 0 || b < 0 || parent[a] < 0 || parent[b] < 0) return;
-  const std::int32_t one = root_of(static_cast<std::int32_t>(a), parent);
-  const std::int32_t other = root_of(static_cast<std::int32_t>(b), parent);
-  parent[std::max(one, other)] = std::min(one, other);
+  unite(parent, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
 }
 
 }  // namespace
@@ -142,7 +136,7 @@ void Components::unite_neighbours(std::vector<std::int32_t>& parent) const {
         const std::int64_t next = down ? cell + columns : cell + 1;
         const std::int32_t next_gate = number_.values[next];
         if (gate < 0 && next_gate < 0) {
-          unite(cell, next, parent);
+          join(parent, cell, next);
           continue;
         }
         if (next_gate >= 0) pieces_of(opened_[next_gate], there);
@@ -150,7 +144,7 @@ void Components::unite_neighbours(std::vector<std::int32_t>& parent) const {
           // The parts on both sides of the line between the two cells.
           const std::int64_t a = gate < 0 ? cell : number_of(gate, down ? here[PARTS - 1][k] : here[k][PARTS - 1]);
           const std::int64_t b = next_gate < 0 ? next : number_of(next_gate, down ? there[0][k] : there[k][0]);
-          unite(a, b, parent);
+          join(parent, a, b);
         }
       }
     }

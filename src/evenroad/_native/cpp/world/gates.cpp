@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "common/disjoint_sets.hpp"
 #include "world/disk.hpp"
 
 namespace evenroad::world {
@@ -63,18 +64,13 @@ class Owners {
   /// Cells of one row that are surely free, from `begin` up to `end`.
   struct Run {
     std::int64_t begin, end;
-    std::int32_t parent;
   };
 
   std::int64_t index(std::int64_t row, std::int64_t column) const { return (row - top_) * side_ + column - left_; }
 
-  std::int32_t root(std::int32_t run) {
-    while (runs_[run].parent != run) run = runs_[run].parent = runs_[runs_[run].parent].parent;
-    return run;
-  }
-
   /// Number the components of surely free cells, which hang together over sides and corners.
   void join_runs() {
+    std::vector<std::int32_t> parents;
     std::size_t above = 0;
     for (std::int64_t row = 0; row < side_; row++) {
       const std::size_t first = runs_.size();
@@ -87,18 +83,17 @@ class Owners {
         const std::int64_t begin = cell;
         while (cell < end_of_row && states_[cell] >= FREE) cell++;
         const auto own = static_cast<std::int32_t>(runs_.size());
-        runs_.push_back({begin, cell, own});
+        runs_.push_back({begin, cell}), parents.push_back(own);
         // Runs of the row above that this one touches; the last of them may touch the next one, too.
         while (above < first && runs_[above].end + side_ < begin) above++;
         for (std::size_t other = above; other < first && runs_[other].begin + side_ <= cell; other++) {
-          const std::int32_t a = root(own), b = root(static_cast<std::int32_t>(other));
-          runs_[std::max(a, b)].parent = std::min(a, b);
+          unite(parents, own, static_cast<std::int32_t>(other));
         }
       }
       above = first;
     }
     for (std::size_t run = 0; run < runs_.size(); run++) {
-      const std::int32_t component = root(static_cast<std::int32_t>(run)) + 1;
+      const std::int32_t component = root_of(parents, static_cast<std::int32_t>(run)) + 1;
       std::fill(owner_.begin() + runs_[run].begin, owner_.begin() + runs_[run].end, component);
     }
   }

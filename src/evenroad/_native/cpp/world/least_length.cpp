@@ -87,7 +87,6 @@ class AnyAngleSearch {
 
   /// Return the row that is entered over an interval.
   static std::int64_t row_beyond(const Interval& at) { return at.onward > 0 ? at.line : at.line - 1; }
-  static std::int64_t row_behind(const Interval& at) { return at.onward > 0 ? at.line - 1 : at.line; }
 
   bool holds_goal(std::int64_t row, const Run& run) const {
     return static_cast<double>(row) <= goal_.y && goal_.y <= static_cast<double>(row + 1) && run.left <= goal_.x &&

@@ -43,8 +43,6 @@ class Occupancy {
     return shift == 0 ? word[0] : word[0] >> shift | word[1] << (64 - shift);
   }
 
-  bool is_occupied(std::int64_t row, std::int64_t column) const { return (window(row, column) & 1) != 0; }
-
   /// Return how many columns to the left of one of the map the nearest occupied cell is, 0 in one; more than `most`
   /// where it is farther.
   std::int64_t to_left(std::int64_t row, std::int64_t column, std::int64_t most) const {
