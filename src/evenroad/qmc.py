@@ -47,7 +47,7 @@ def _started(given: RngLike | None, old: RngLike | None) -> np.random.Generator:
     return np.random.default_rng() if rng is None else generator(rng)
 
 
-class _SharedEngine(QMCEngine):
+class _SharedEngine(QMCEngine):  # type: ignore[misc]
     """An engine that returns each point once, in any thread."""
 
     _lock: OwnLock

@@ -125,7 +125,7 @@ def _files_beside(file: Path) -> Any:
     """Return what gives trimesh the files that a mesh names: those in its folder, and no pipe or device."""
     from trimesh.resolvers import FilePathResolver
 
-    class FilesBeside(FilePathResolver):
+    class FilesBeside(FilePathResolver):  # type: ignore[misc]
         def absolute(self, name: str) -> Path:
             path = Path(super().absolute(name))
             with suppress(FileNotFoundError):

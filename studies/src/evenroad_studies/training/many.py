@@ -15,8 +15,9 @@ import numpy as np
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
+from evenroad._threads import processors
 from evenroad.datasets.folder import claim_folder
-from evenroad.datasets.workers import ProcessPool, processors
+from evenroad.datasets.workers import ProcessPool
 from evenroad.errors import InvalidValue, WorkerLost
 from evenroad.points.anneal import Callback, require_points_for
 from evenroad.points.pointset import Origin, PointSet
