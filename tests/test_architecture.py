@@ -75,7 +75,7 @@ UPWARD = {
     ("robots.robot", TYPES): {"poses.pose_goal", "scenes.scene"},
     ("scenes.scene", "Scene.__init__"): {"scenes.scene_file"},
     ("task.task", "Task.plan"): {"task.solve"},
-    ("trajectory.trajectory", "Trajectory.save"): {"trajectory.files"},
+    ("trajectory.trajectory", "Trajectory.save"): {"trajectory.formats"},
     ("world.gridmap.gridmap", "GridMap.plot"): {"viz.result"},
     ("world.gridmap.gridmap", "GridMap.world"): {"world.gridmap.disk_world"},
     ("world.gridmap.gridmap", TYPES): {"world.gridmap.disk_world"},

@@ -11,7 +11,7 @@ import pytest
 from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.trajectory import Limits, make_trajectory
-from evenroad.trajectory.files import joint_trajectory
+from evenroad.trajectory.formats import joint_trajectory
 from tests_peers.ros2_messages import FOLDER, Cdr, _header, _module, _pose, _sent, _written
 from tests_peers.ros2_messages import _folder as _folder
 from tests_peers.ros2_messages import make as make

@@ -14,7 +14,7 @@ import evenroad as er
 from evenroad.planning.read_problem import arm_problem
 from evenroad.robot import Robot
 from evenroad.trajectory import arm_trajectory
-from evenroad.trajectory.files import joint_trajectory
+from evenroad.trajectory.formats import joint_trajectory
 
 
 def answer(make: Make, message: Any, robot: Robot, goal: str, speed: float = 1.0) -> tuple[Any, str]:

@@ -1,4 +1,7 @@
-"""Reading YAML files with unique keys; errors name what is wrong, and where."""
+"""Reading YAML files with unique keys; errors name what is wrong, and where.
+
+``_understood.py`` refuses keys that a reader does not know.
+"""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from evenroad.trajectory.files import trajectory_of
+from evenroad.trajectory.formats import trajectory_of
 
 REACH = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture")
 

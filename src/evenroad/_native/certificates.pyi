@@ -3,11 +3,30 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints
 
+class ShapeTables:
+    def __init__(self, points: Floats, corners: Ints, sizes: Floats, numbers: Ints) -> None: ...
+
+class JointTables:
+    def __init__(self, links: Ints, poses: Floats, rules: Floats) -> None: ...
+
+class Touch:
+    motion: int
+    share: float
+    pair: int
+    gap: float
+
+class Answers:
+    answers: npt.NDArray[np.uint8]
+    directions: npt.NDArray[np.float32]
+    touch: Touch
+
 def write_answers(
-    shapes: tuple[Floats, Ints, Floats, Ints],
-    joints: tuple[Ints, Floats, Floats],
-    nodes: tuple[Ints, Ints],
-    pairs: tuple[Ints, Floats],
+    shape_tables: ShapeTables,
+    joint_tables: JointTables,
+    nodes: Ints,
+    shapes: Ints,
+    pairs: Ints,
+    keeps: Floats,
     curves: Floats,
     most: int,
-) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32], int, float, int, float] | None: ...
+) -> Answers | None: ...

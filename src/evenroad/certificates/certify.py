@@ -92,20 +92,22 @@ def answers_of(claim: Claim, curves: Floats) -> tuple[npt.NDArray[np.uint8], npt
     written = native.write_answers(
         tables_of(claim.shapes),
         claim.tree.tables(),
-        (np.array(rows, dtype=np.int64).reshape(-1, 3), members),
-        (both, np.array([keep for _, _, keep, _ in claim.pairs], dtype=float)),
+        np.array(rows, dtype=np.int64).reshape(-1, 3),
+        members,
+        both,
+        np.array([keep for _, _, keep, _ in claim.pairs], dtype=float),
         np.ascontiguousarray(curves, dtype=float),
         MOST_TASKS,
     )
     if written is None:
         raise Exhausted(f"the certificate would have more than {MOST_TASKS} answers")
-    answers, directions, motion, share, pair, gap = written
-    if pair >= 0:
-        first, second = claim.pairs[pair][3]
-        what = "touches" if gap < _DECIDED else "is not shown to be apart from"
-        said = f"no certificate: motion {motion} at share {share:.6f}: {first} {what} {second}"
+    touch = written.touch
+    if touch.pair >= 0:
+        first, second = claim.pairs[touch.pair][3]
+        what = "touches" if touch.gap < _DECIDED else "is not shown to be apart from"
+        said = f"no certificate: motion {touch.motion} at share {touch.share:.6f}: {first} {what} {second}"
         raise InvalidValue(said if claim.by_srdf else f"{said}; {_ALWAYS}")
-    return answers, directions
+    return written.answers, written.directions
 
 
 def packed(answers: npt.NDArray[np.uint8]) -> bytes:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._native.certificates import JointTables
 from evenroad.certificates.elements import Elements, elements_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
@@ -44,12 +44,12 @@ class Tree:
     placement: dict[str, tuple[int, Pose]]
     moved: tuple[tuple[int, Joint, Pose, int, float, float], ...]
 
-    def tables(self) -> tuple[Ints, Floats, Floats]:
+    def tables(self) -> JointTables:
         """Return the joints as the kernel takes them."""
         links = [(parent, column, joint.kind == "prismatic") for parent, joint, _, column, _, _ in self.moved]
         poses = [np.concatenate([at.matrix[:3, :3].ravel(), at.xyz, joint.axis]) for _, joint, at, *_ in self.moved]
         rules = [(factor, offset) for *_, factor, offset in self.moved]
-        return np.array(links, dtype=np.int64), np.array(poses, dtype=float), np.array(rules, dtype=float)
+        return JointTables(np.array(links, dtype=np.int64), np.array(poses, dtype=float), np.array(rules, dtype=float))
 
 
 @dataclass(frozen=True)

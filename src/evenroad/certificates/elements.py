@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints, unique_rows
+from evenroad._native.certificates import ShapeTables
 from evenroad.errors import NotAvailable
 from evenroad.geometry.mesh_file import load_mesh
 from evenroad.geometry.pose import Pose
@@ -29,15 +29,6 @@ class Elements:
     disc: float = 0.0
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     is_box: bool = False
-
-
-class ShapeTables(NamedTuple):
-    """The elements of several shapes, one after the other, as the kernel takes them."""
-
-    points: Floats
-    corners: Ints
-    sizes: Floats
-    numbers: Ints
 
 
 def elements_of(body: Shape, at: Pose, *, convex: bool = False, wider: float = 0.0) -> Elements:

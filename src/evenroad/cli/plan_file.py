@@ -19,7 +19,7 @@ from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult
 from evenroad.poses.constraint import Constraint, with_tip
 from evenroad.space.path import continued
-from evenroad.trajectory.files import trajectory_of
+from evenroad.trajectory.formats import trajectory_of
 from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import World, load_map
 

@@ -20,7 +20,7 @@ from evenroad.scenes.scene import Scene
 if TYPE_CHECKING:
     from evenroad.task import TaskResult
     from evenroad.trajectory import Trajectory
-    from evenroad.trajectory.files import Json
+    from evenroad.trajectory.formats import Json
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +52,7 @@ class RunTask(RobotOptions):
 
     def run(self) -> int:
         """Plan, write, report; return 0 if all steps can be done, else 1."""
-        from evenroad.trajectory.files import format_of, save_trajectories
+        from evenroad.trajectory.formats import format_of, save_trajectories
 
         require_positive("speed", self.speed, at_most=1.0)
         for file in self.out:

@@ -19,7 +19,7 @@ from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.trajectory import Trajectory, arm_trajectory, controller_joints, limits_of, proved_in
-from evenroad.trajectory.files import Json, trajectory_of
+from evenroad.trajectory.formats import Json, trajectory_of
 from evenroad.trajectory.make import DEVIATION
 
 _SAME = 1e-6

@@ -137,7 +137,7 @@ def trajectory_rows(
     if not result.solved or result.path is None or stays:
         _remove_earlier(plan)
         return [("trajectory", "none: the start is the goal")] if stays else [], None
-    from evenroad.trajectory.files import save_trajectories, trajectory_record
+    from evenroad.trajectory.formats import save_trajectories, trajectory_record
 
     try:
         options = _options(plan, problem, constraints)

@@ -1,4 +1,4 @@
-"""Texts of infeasibility proofs: about which bodies, which joints, and whether about the whole query."""
+"""Which proofs that there is no path are tried, in which order, and what they say of bodies, joints and the query."""
 
 from __future__ import annotations
 

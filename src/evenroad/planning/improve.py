@@ -1,4 +1,4 @@
-"""Better paths for more time: plans below a bound for arms, other sequences for other worlds, a roadmap for maps."""
+"""Other paths while time is left: below a bound for arms, by other sequences, or by a roadmap on maps."""
 
 from __future__ import annotations
 

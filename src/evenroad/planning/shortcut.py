@@ -1,4 +1,4 @@
-"""Shortcutting: straighten a path with motions that the world calls free."""
+"""Shortcutting: straighten a path with motions that the world calls free; an arm's path is smoothed in the kernel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading a scene: a YAML file of the obstacles around a robot."""
+"""Reading a scene from any file: our YAML here, MoveIt's, URDF and glTF by the readers beside."""
 
 from __future__ import annotations
 

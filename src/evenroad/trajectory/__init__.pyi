@@ -4,9 +4,9 @@ from evenroad.trajectory.arm import controller_joints as controller_joints
 from evenroad.trajectory.checked import proved_in as proved_in
 from evenroad.trajectory.dynamics import Dynamics as Dynamics
 from evenroad.trajectory.dynamics import load_dynamics as load_dynamics
-from evenroad.trajectory.files import format_of as format_of
-from evenroad.trajectory.files import load_trajectory as load_trajectory
-from evenroad.trajectory.files import save_trajectory as save_trajectory
+from evenroad.trajectory.formats import format_of as format_of
+from evenroad.trajectory.formats import load_trajectory as load_trajectory
+from evenroad.trajectory.formats import save_trajectory as save_trajectory
 from evenroad.trajectory.in_motion import InMotion as InMotion
 from evenroad.trajectory.limits import Limits as Limits
 from evenroad.trajectory.limits import TipLimits as TipLimits

@@ -1,4 +1,4 @@
-"""The fastest times along a rounded path within limits of speed and acceleration."""
+"""The fastest times along a rounded path within limits of speed and acceleration; ``make.py`` averages for jerk."""
 
 from __future__ import annotations
 

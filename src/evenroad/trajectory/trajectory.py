@@ -190,7 +190,7 @@ class Trajectory:
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     trajectory.save(f"{folder}/go.csv")
         """
-        from evenroad.trajectory.files import save_trajectory
+        from evenroad.trajectory.formats import save_trajectory
 
         save_trajectory(path, self, order)
 

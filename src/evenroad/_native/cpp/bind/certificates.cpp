@@ -1,4 +1,6 @@
 // evenroad._native.certificates: writing a certificate.
+#include <nanobind/stl/optional.h>
+
 #include "bind/arrays.hpp"
 #include "certificates/writer.hpp"
 
@@ -55,14 +57,13 @@ struct ShapeTables {
 
 /// The arrays of the joints that move frames.
 struct JointTables {
-  JointTables(nb::handle links, nb::handle poses, nb::handle rules, std::size_t joints)
+  JointTables(nb::handle links, nb::handle poses, nb::handle rules)
       : links(links, "links"), poses(poses, "poses"), rules(rules, "rules") {
     const std::size_t count = this->links.shape(0);
     this->links.of_shape({count, 3}), this->poses.of_shape({count, 15}), this->rules.of_shape({count, 2});
     for (std::size_t k = 0; k < count; k++) {
       const auto row = this->links.matrix()[k];
       require_below(row[0], k + 1, "parents");
-      require_below(row[1], joints, "columns");
       parent.push_back(row[0]), column.push_back(row[1]), slides.push_back(row[2] != 0);
       const auto pose = this->poses.matrix()[k];
       turn.insert(turn.end(), pose.begin(), pose.begin() + 9);
@@ -81,23 +82,25 @@ struct JointTables {
   std::vector<std::uint8_t> slides;
 };
 
-nb::object write_answers(nb::handle shapes, nb::handle joints, nb::handle nodes, nb::handle pairs, nb::handle curves,
-                         std::int64_t most) {
-  const nb::tuple of_shapes = value_of<nb::tuple>(shapes, "shapes"), of_joints = value_of<nb::tuple>(joints, "joints");
-  const nb::tuple of_nodes = value_of<nb::tuple>(nodes, "nodes"), of_pairs = value_of<nb::tuple>(pairs, "pairs");
-  require(of_shapes.size() == 4 && of_joints.size() == 3 && of_nodes.size() == 2 && of_pairs.size() == 2,
-          "shapes, joints, nodes and pairs must be tuples of 4, 3, 2 and 2 arrays");
+/// The answers and directions of a certificate, or where a pair touches.
+struct Answers {
+  nb::object answers, directions;
+  Touch touch;
+};
+
+std::optional<Answers> write_answers(const ShapeTables& tables, const JointTables& moving, nb::handle nodes,
+                                     nb::handle shapes, nb::handle pairs, nb::handle keeps, nb::handle curves,
+                                     std::int64_t most) {
   const Array<const double, 3> points(curves, "curves");
   points.of_shape({points.shape(0), 3, points.shape(2)});
   require(points.shape(0) < (std::size_t{1} << 20) && points.shape(2) > 0, "curves must be fewer than 2^20");
   require_below(most, std::size_t{1} << 24, "most");
-  const ShapeTables tables(of_shapes[0], of_shapes[1], of_shapes[2], of_shapes[3]);
-  const JointTables moving(of_joints[0], of_joints[1], of_joints[2], points.shape(2));
-  const Array<const std::int64_t, 2> rows(of_nodes[0], "nodes"), both(of_pairs[0], "pairs");
-  const Numbers members(of_nodes[1], "members");
-  const Floats keep(of_pairs[1], "keep");
+  require_below(moving.column, points.shape(2), "columns");
+  const Array<const std::int64_t, 2> rows(nodes, "nodes"), both(pairs, "pairs");
+  const Numbers members(shapes, "shapes");
+  const Floats keep(keeps, "keeps");
   rows.of_shape({rows.shape(0), 3}), both.of_shape({keep.size(), 2});
-  require_below(members.span(), tables.sizes.shape(0), "members");
+  require_below(members.span(), tables.sizes.shape(0), "shapes");
   require_below(both.span(), rows.shape(0), "pairs");
   Nodes all(tables.shapes());
   for (std::size_t i = 0; i < rows.shape(0); i++) {
@@ -116,19 +119,31 @@ nb::object write_answers(nb::handle shapes, nb::handle joints, nb::handle nodes,
       return write(all, motions, points.shape(0), every, static_cast<std::size_t>(most));
     });
   } catch (const TooLong&) {
-    return nb::none();
+    return std::nullopt;
   }
-  const Touch touch = written.touch;
-  return nb::make_tuple(as_row(std::move(written.answers)), as_rows(std::move(written.directions), 3), touch.motion,
-                        touch.share, touch.pair, touch.gap);
+  return Answers{as_row(std::move(written.answers)), as_rows(std::move(written.directions), 3), written.touch};
 }
 
 }  // namespace
 
 void add_certificates(nb::module_& module) {
   nb::module_ part = module.def_submodule("certificates", "Writing a certificate.");
-  part.def("write_answers", &write_answers, "shapes"_a.none(), "joints"_a.none(), "nodes"_a.none(), "pairs"_a.none(),
-           "curves"_a.none(), "most"_a);
+  nb::class_<ShapeTables>(part, "ShapeTables")
+      .def(nb::init<nb::handle, nb::handle, nb::handle, nb::handle>(), "points"_a.none(), "corners"_a.none(),
+           "sizes"_a.none(), "numbers"_a.none());
+  nb::class_<JointTables>(part, "JointTables")
+      .def(nb::init<nb::handle, nb::handle, nb::handle>(), "links"_a.none(), "poses"_a.none(), "rules"_a.none());
+  nb::class_<Touch>(part, "Touch")
+      .def_ro("motion", &Touch::motion)
+      .def_ro("share", &Touch::share)
+      .def_ro("pair", &Touch::pair)
+      .def_ro("gap", &Touch::gap);
+  nb::class_<Answers>(part, "Answers")
+      .def_ro("answers", &Answers::answers)
+      .def_ro("directions", &Answers::directions)
+      .def_ro("touch", &Answers::touch);
+  part.def("write_answers", &write_answers, "shape_tables"_a, "joint_tables"_a, "nodes"_a.none(), "shapes"_a.none(),
+           "pairs"_a.none(), "keeps"_a.none(), "curves"_a.none(), "most"_a);
 }
 
 }  // namespace evenroad::bind

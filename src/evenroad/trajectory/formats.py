@@ -1,4 +1,7 @@
-"""A trajectory on disk: JSON that is read back, CSV, and ROS 2's JointTrajectory as YAML and as a bag."""
+"""Formats of trajectories on disk: JSON that is read back, CSV, and ROS 2's JointTrajectory as YAML and as a bag.
+
+`WRITERS` lists them; one of another vendor is a file beside ``urscript.py``, and a line there.
+"""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import yaml
 import evenroad as er
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable, UnknownName
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, proved_in, save_trajectory
-from evenroad.trajectory.files import save_trajectories
+from evenroad.trajectory.formats import save_trajectories
 from evenroad.trajectory.send import send_trajectory
 from tests.refused import refused
 
