@@ -171,15 +171,14 @@ def test_a_path_that_was_not_confirmed_in_time_is_not_solved(caged, monkeypatch)
     def no_time(*_):
         raise BudgetSpent
 
-    world = er.ArmWorld("ur5", "box-reach")
-    monkeypatch.setattr(sys.modules["evenroad.planning.plan"], "mesh_check", no_time)
-    result = er.plan(world, "home", "inside")
+    monkeypatch.setattr(sys.modules["evenroad.planning.finish"], "mesh_check", no_time)
+    result = er.plan("box-reach", "home", "inside", robot="ur5")
     assert (result.status, result.solved) == (Status.BUDGET_SPENT, False)
     assert result.path is not None
     assert "no time to check it with the meshes" in result.message
     monkeypatch.undo()
-    monkeypatch.setattr(type(world), "validate", no_time)
-    result = er.plan(world, "home", "inside", certified=True)
+    monkeypatch.setattr(er.ArmWorld, "validate", no_time)
+    result = er.plan(er.ArmWorld("ur5", "box-reach"), "home", "inside", certified=True)
     assert result.status is Status.NOT_CERTIFIED
     assert "no time" in result.message
 

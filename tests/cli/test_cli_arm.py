@@ -198,7 +198,7 @@ BAD = [
     ({"scene": "turned.yaml"}, "obstacle 'ball' in turned.yaml.*quaternion"),
     ({"scene": "turned.scene"}, "turned.scene.*quaternion"),
     ({"scene": "mesh.scene"}, "shape of object 'cup' in mesh.scene: 'mesh'; known: box, cylinder, sphere"),
-    ({"scene": "cup.yaml"}, "object 'cup' in cup.yaml must have a pose for each mesh"),
+    ({"scene": "cup.yaml"}, "object 'cup' in the planning scene cup.yaml must have a pose for each mesh"),
     ({"scene": "none.scene"}, "there is no scene file none.scene"),
     ({"bodies": "none.yaml"}, "cannot read the file of bodies none.yaml"),
     ({"clearance": -1}, "clearance must be a finite number >= 0, got -1"),

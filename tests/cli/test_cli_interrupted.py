@@ -10,7 +10,8 @@ from evenroad.io import load_plan
 
 INTERRUPTED = """
 import os, signal, sys, threading
-from evenroad.planning.planners import growing, improve
+from evenroad.planning import improve
+from evenroad.planning.planners import growing
 
 # A real signal, soon after there is a path that can become shorter; trees take long, a roadmap may be done at once.
 soon = threading.Timer(0.4, os.kill, (os.getpid(), signal.SIGINT))

@@ -95,7 +95,7 @@ std::optional<Answers> write_answers(const ShapeTables& tables, const JointTable
   points.of_shape({points.shape(0), 3, points.shape(2)});
   require(points.shape(0) < (std::size_t{1} << 20) && points.shape(2) > 0, "curves must be fewer than 2^20");
   require_below(most, std::size_t{1} << 24, "most");
-  require_below(moving.column, points.shape(2), "columns");
+  require_below(std::span(moving.column), points.shape(2), "columns");
   const Array<const std::int64_t, 2> rows(nodes, "nodes"), both(pairs, "pairs");
   const Numbers members(shapes, "shapes");
   const Floats keep(keeps, "keeps");
