@@ -107,7 +107,8 @@ States states(const RoundedPath& path, const TimeLaw& law, nb::handle times) {
 trajectory::Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const JointLimits& most,
                                   std::int64_t samples) {
   require_of_dim(most, path.dim());
-  require_below(samples - 2, MOST_SAMPLES, "samples less two");
+  require_below(samples, MOST_SAMPLES + 2, "samples");
+  require(samples >= 2, "samples must be 2 or more");
   return without_gil([&] { return trajectory::largest_shares(path, law, most, static_cast<std::size_t>(samples)); });
 }
 
@@ -185,7 +186,8 @@ trajectory::Timed timed(nb::handle waypoints, nb::handle deviation, const JointL
   cuts.of_shape({path.shape(0)});
   require_of_dim(most, path.shape(1)), require_of_dim(within.further, path.shape(1));
   require(step > 0.0 && step <= LONGEST, "step must be > 0 and at most 1e9");
-  require_below(most_steps - 1, MOST_TIMES, "most_steps less one");
+  require_below(most_steps, MOST_TIMES + 1, "most_steps");
+  require(most_steps >= 1, "most_steps must be 1 or more");
   return without_gil([&] {
     return trajectory::timed(path.matrix(), cuts.span(), most, within, {step, static_cast<std::size_t>(most_steps)});
   });
