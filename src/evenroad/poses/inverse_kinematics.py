@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import as_row
-from evenroad._time_limit import BudgetSpent
+from evenroad._time_limit import BudgetSpent, look_at_clock
 from evenroad.poses.chain import Chain, chain_of, default_tip, frame_pose
 from evenroad.poses.closed_form import closed_form
 from evenroad.poses.pose_goal import PoseGoal
@@ -135,6 +135,7 @@ def _reached_quickly(world: Checks, goals: Sequence[PoseGoal], start: Floats) ->
     together: dict[tuple[int, bool], list[tuple[int, PoseTask]]] = {}
     chains: dict[int, Chain] = {}
     for number, goal in enumerate(goals):
+        look_at_clock()
         chain, task = task_of(world.robot, goal)
         if goal.others or (goal.is_exact and closed_form(chain) is not None):
             found[number] = reach(world, goal, start, quickly=True)
@@ -150,6 +151,7 @@ def _reached_quickly(world: Checks, goals: Sequence[PoseGoal], start: Floats) ->
         turned, whose = with_turns(chain, q[free], start, of[free])
         begins, firsts = (np.searchsorted(numbers, np.arange(len(some) + 1)) for numbers in (of, whose))
         for k, (number, task) in enumerate(some):
+            look_at_clock()
             postures, rows = slice(*begins[k : k + 2]), turned[firsts[k] : firsts[k + 1]]
             count, blocked = len(q[postures]), int((~free[postures]).sum())
             reason: Callable[[], str] = str
@@ -188,8 +190,11 @@ def _with_others(world: Checks, goal: PoseGoal, rows: Floats, start: Floats, sol
 
 def _spent(goal: PoseGoal, start: Floats) -> Reached:
     """Return that there was no time to look for all postures of a goal."""
-    why = f"no free configuration was found for {goal} in the time that there was; give it more"
-    return Reached(np.empty((0, len(start))), 0, 0, "numeric", start, lambda: why, spent=True)
+
+    def why() -> str:
+        return f"no free configuration was found for {goal} in the time that there was; give it more"
+
+    return Reached(np.empty((0, len(start))), 0, 0, "numeric", start, why, spent=True)
 
 
 def _why_not_both(goal: PoseGoal, reason: Callable[[], str]) -> str:
