@@ -11,7 +11,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeAlias
 
 from evenroad.errors import BrokenFile
 
@@ -20,6 +20,8 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
+Json: TypeAlias = Any
+"""A value of JSON, which is checked as it is read."""
 _umask_lock = threading.Lock()
 _PREFIX, _SUFFIX = ".evenroad-", ".part"
 """Beginning and end of the names of temporary files."""
@@ -147,7 +149,7 @@ def looks_like(path: str | os.PathLike[str]) -> str:
     return "text" if is_text else "no text"
 
 
-def read_json_file(path: str | os.PathLike[str], what: str) -> Any:
+def read_json_file(path: str | os.PathLike[str], what: str) -> Json:
     """Return the content of a JSON file of the kind `what`; BrokenFile if it cannot be read."""
     try:
         return json.loads(read_bytes(path).decode())

@@ -9,12 +9,13 @@ import os
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from errno import EINVAL
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._files import atomic_write, not_a, open_file
+from evenroad._arrays import Array
+from evenroad._files import Json, atomic_write, not_a, open_file
 from evenroad._shared import OwnLock
 from evenroad.errors import BrokenFile, UnknownName, shown
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     import zipfile
 
 Path = str | os.PathLike[str]
-Arrays = dict[str, npt.NDArray[Any]]
+Arrays = dict[str, Array]
 _ALWAYS_ALLOWED, _MOST_TIMES = 1 << 22, 50
 """Largest unpacked size of an archive: a number of bytes, or a multiple of its own size; ours have 1 to 10 times."""
 
@@ -85,7 +86,7 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
     return arrays
 
 
-def read_array(file: IO[bytes], size: int) -> npt.NDArray[Any]:
+def read_array(file: IO[bytes], size: int) -> Array:
     """Return the array of an open .npy file of `size` bytes, or raise ValueError if its header announces others."""
     version = np.lib.format.read_magic(file)
     if version not in _HEADERS:
@@ -118,7 +119,7 @@ def require_unpackable(path: Path, archive: zipfile.ZipFile) -> None:
         raise BrokenFile(f"{path} has {packed} bytes and would unpack to {unpacked}: it is not read")
 
 
-def read_json(path: Path, name: str, array: npt.NDArray[Any], keys: Collection[str]) -> dict[str, Any]:
+def read_json(path: Path, name: str, array: Array, keys: Collection[str]) -> dict[str, Json]:
     """Return the JSON object that an array of no axes holds as text, with keys among `keys`, or raise BrokenFile."""
     try:
         record = json.loads(str(array))
@@ -129,9 +130,7 @@ def read_json(path: Path, name: str, array: npt.NDArray[Any], keys: Collection[s
     return record
 
 
-def require_array(
-    path: Path, name: str, array: npt.NDArray[Any], dtype: npt.DTypeLike, shape: tuple[int | None, ...]
-) -> None:
+def require_array(path: Path, name: str, array: Array, dtype: npt.DTypeLike, shape: tuple[int | None, ...]) -> None:
     """Raise BrokenFile unless an array has this dtype and shape; None stands for any length."""
     fits = len(shape) == array.ndim and all(
         wanted is None or wanted == length for wanted, length in zip(shape, array.shape, strict=True)
@@ -143,7 +142,7 @@ def require_array(
         )
 
 
-def digest(arrays: Mapping[str, npt.NDArray[Any]]) -> str:
+def digest(arrays: Mapping[str, Array]) -> str:
     """Return the SHA-256 (hex) of arrays: their names, dtypes, shapes and bytes."""
     sha = hashlib.sha256()
     for name in sorted(arrays):

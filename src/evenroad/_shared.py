@@ -5,10 +5,11 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable
 from functools import cached_property, wraps
-from typing import Any, Self, TypeVar, overload
+from typing import Concatenate, ParamSpec, Protocol, Self, TypeVar, overload
 
 Made = TypeVar("Made")
-Function = TypeVar("Function", bound=Callable[..., Any])
+Given = ParamSpec("Given")
+Locked = TypeVar("Locked", bound="_Locked")
 
 
 def once(function: Callable[..., Made]) -> Callable[..., Made]:
@@ -67,12 +68,16 @@ class OwnLock:
         return OwnLock, ()
 
 
-def one_at_a_time(method: Function) -> Function:
+class _Locked(Protocol):
+    _lock: OwnLock
+
+
+def one_at_a_time(method: Callable[Concatenate[Locked, Given], Made]) -> Callable[Concatenate[Locked, Given], Made]:
     """Return a method under the `_lock` of its value."""
 
     @wraps(method)
-    def called(self: Any, *given: Any, **named: Any) -> Any:
+    def called(self: Locked, /, *given: Given.args, **named: Given.kwargs) -> Made:
         with self._lock:
             return method(self, *given, **named)
 
-    return called  # type: ignore[return-value]
+    return called

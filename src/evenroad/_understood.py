@@ -18,7 +18,6 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 from xml.etree.ElementTree import Element
 
 from evenroad.errors import UnknownName, near, shown
@@ -64,12 +63,12 @@ class Kind:
         return frozenset((*self.names, *self.harmless))
 
 
-_Node = tuple[Any, str, "_Node | None"]
+_Node = tuple[Mapping[str, object] | Element, str, "_Node | None"]
 """A mapping or element, the key or tag that it has, and what it is in."""
 
 
 def require_understood(
-    document: Mapping[Any, Any] | Element, kind: Kind, where: str, notes: list[str] | None = None
+    document: Mapping[str, object] | Element, kind: Kind, where: str, notes: list[str] | None = None
 ) -> None:
     """Raise UnknownName, or add one note, for what a mapping or XML element has that its kind does not know.
 

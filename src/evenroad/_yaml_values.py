@@ -7,10 +7,10 @@ Scalars mean what they mean to its safe loader.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import yaml
 from yaml.constructor import ConstructorError
@@ -19,6 +19,7 @@ from evenroad.errors import BrokenFile
 
 # libyaml where PyYAML was built with it: ten times as fast.
 Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_Mapping: TypeAlias = dict[object, object]
 _DEEPEST = 100
 _LARGEST, _LARGEST_SHARE = 1_000_000, 10
 """Largest number of characters and entries with all aliases expanded: a number, and one per character of the file."""
@@ -33,15 +34,15 @@ _MERGE, _NO_KEY = object(), object()
 class _Open:
     """A list or mapping while it is read: its values, its size with all aliases written out, how deep it is."""
 
-    values: Any
+    values: list[object] | _Mapping
     anchor: str | None = None
     size: int = 1
     depth: int = 0
-    key: Any = _NO_KEY
-    lines: dict[Any, int] = field(default_factory=dict)
-    merged: list[dict[Any, Any]] = field(default_factory=list)
+    key: object = _NO_KEY
+    lines: dict[object, int] = field(default_factory=dict)
+    merged: list[_Mapping] = field(default_factory=list)
 
-    def add(self, value: Any, event: Any, path: Path) -> None:
+    def add(self, value: object, event: yaml.Event, path: Path) -> None:
         """Add a value, or the key of the next one."""
         if isinstance(self.values, list):
             self.values.append(value)
@@ -51,37 +52,42 @@ class _Open:
             self.key = value
         elif self.key is _MERGE:
             # Of several the first counts most, and the mapping's own keys more.
-            parts = value[::-1] if isinstance(value, list) else [value]
-            if not all(isinstance(part, dict) for part in parts):
-                raise _refused("expected a mapping or list of mappings for merging", event)
-            self.merged += parts
+            for part in value[::-1] if isinstance(value, list) else [value]:
+                if not isinstance(part, dict):
+                    raise _refused("expected a mapping or list of mappings for merging", event)
+                self.merged.append(part)
             self.key = _NO_KEY
         else:
             self.values[self.key] = value
             self.key = _NO_KEY
 
-    def _require_new(self, key: Any, event: Any, path: Path) -> None:
+    def _require_new(self, key: object, event: yaml.Event, path: Path) -> None:
         if isinstance(key, list | dict):
             raise _refused("found unhashable key", event)
-        line = event.start_mark.line + 1
+        line = _mark(event).line + 1
         # As text and as it is: 1 and '1' are one key to us, 1 and true to Python.
         for name in (key,) if isinstance(key, str) else (str(key), key):
             if name in self.lines:
                 raise BrokenFile(f"{path} has the key {str(key)!r} twice, in lines {self.lines[name]} and {line}")
         self.lines[key] = self.lines[str(key)] = line
 
-    def closed(self) -> Any:
+    def closed(self) -> list[object] | _Mapping:
         """Return the whole list or mapping."""
-        if not self.merged:
+        if not self.merged or isinstance(self.values, list):
             return self.values
-        whole: dict[Any, Any] = {}
+        whole: _Mapping = {}
         for part in (*self.merged, self.values):
             whole |= part
         return whole
 
 
-def _refused(problem: str, event: Any) -> ConstructorError:
-    return ConstructorError(None, None, problem, event.start_mark)
+def _mark(event: yaml.Event) -> Any:
+    """Return where an event begins; the marks of libyaml are a class of their own."""
+    return event.start_mark
+
+
+def _refused(problem: str, event: yaml.Event) -> ConstructorError:
+    return ConstructorError(None, None, problem, _mark(event))
 
 
 class _Scalars:
@@ -89,9 +95,9 @@ class _Scalars:
 
     def __init__(self, tags: Mapping[str, Callable[[str, str], object]], path: Path) -> None:
         self._tags, self._path, self._rules = tags, path, Loader("")
-        self._known: dict[tuple[str, bool], Any] = {}
+        self._known: dict[tuple[str, bool], object] = {}
 
-    def value_of(self, event: Any, *, is_key: bool) -> Any:
+    def value_of(self, event: yaml.ScalarEvent, *, is_key: bool) -> object:
         """Return the value of an event's scalar."""
         text, tag = event.value, event.tag
         if tag in (None, "!"):
@@ -107,7 +113,7 @@ class _Scalars:
             raise _refused("<< is no value", event)
         return value
 
-    def _made(self, tag: str, event: Any) -> Any:
+    def _made(self, tag: str, event: yaml.ScalarEvent) -> object:
         if tag in self._tags:
             return self._tags[tag](tag, event.value)
         if tag == _TAG + "merge":
@@ -116,23 +122,22 @@ class _Scalars:
             return event.value
         if tag == _TAG + "int" and len(event.value) > _MOST_DIGITS:
             # Python takes quadratic time to read it, and refuses to print it.
-            where = f"{self._path} has a number of {len(event.value)} digits in line {event.start_mark.line + 1}"
+            where = f"{self._path} has a number of {len(event.value)} digits in line {_mark(event).line + 1}"
             raise BrokenFile(where)
         make = self._rules.yaml_constructors.get(tag, Loader.construct_undefined)
-        return make(self._rules, yaml.ScalarNode(tag, event.value, event.start_mark, event.end_mark))
+        return make(self._rules, yaml.ScalarNode(tag, event.value, _mark(event)))
 
 
-def values_of(text: str, path: Path, tags: Mapping[str, Callable[[str, str], object]]) -> Any:
+def values_of(text: str, path: Path, tags: Mapping[str, Callable[[str, str], object]]) -> object:
     """Return the content of a YAML text, None for nothing.
 
     Refuses deep files, aliases that expand to gigabytes, and a key that a mapping has twice (BrokenFile); raises what
     PyYAML does, or what the tags' functions do, for a text that is no YAML.
     """
     allowed = _LARGEST + _LARGEST_SHARE * len(text)
-    scalars, known = _Scalars(tags, path), dict[str, tuple[Any, int, int]]()
+    scalars, known = _Scalars(tags, path), dict[str, tuple[object, int, int]]()
     waiting = [_Open([])]
-    events: Iterable[Any] = yaml.parse(text, Loader=Loader)
-    for event in events:
+    for event in yaml.parse(text, Loader=Loader):
         if isinstance(event, yaml.ScalarEvent):
             of = waiting[-1]
             value = scalars.value_of(event, is_key=isinstance(of.values, dict) and of.key is _NO_KEY)
@@ -166,7 +171,7 @@ def values_of(text: str, path: Path, tags: Mapping[str, Callable[[str, str], obj
     return waiting[0].values[0] if waiting[0].values else None
 
 
-def _opened(event: Any) -> _Open:
+def _opened(event: yaml.CollectionStartEvent) -> _Open:
     """Return the list or mapping that begins."""
     kind = "map" if isinstance(event, yaml.MappingStartEvent) else "seq"
     if event.tag not in (None, "!", _TAG + kind):

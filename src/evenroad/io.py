@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,14 +17,14 @@ import numpy.typing as npt
 from evenroad import __version__
 from evenroad._arrays import set_fields
 from evenroad._checks import as_file, require_known
-from evenroad._files import atomic_write, read_json_file
+from evenroad._files import Json, atomic_write, read_json_file
 from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.planning.result import PlanResult, Status
 from evenroad.points import Origin
 
 
-def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, Any]:
+def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, object]:
     """Return a plan as plain JSON values, in the units of its space.
 
     Parameters
@@ -120,7 +119,7 @@ def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
         save_path_csv(path, result.path, names if robot is None else robot.joint_names)
 
 
-def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:
+def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Json]]:
     """Return a plan from its file, without its origin and searched graph, and the options of its query.
 
     Parameters
@@ -156,7 +155,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
     return plan_of(read_json_file(as_file("a plan", path), "plan"), path)
 
 
-def plan_of(record: object, path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:
+def plan_of(record: object, path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Json]]:
     """Return a plan from the record of its file, as :func:`load_plan` does.
 
     Parameters

@@ -12,7 +12,7 @@ an engine: it returns each point once, in order.
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from scipy.stats.qmc import Halton as Halton
@@ -83,12 +83,13 @@ class _SharedEngine(QMCEngine):  # type: ignore[misc]
         with self._lock:
             return np.asarray(super().random(n, workers=workers))
 
-    def reset(self) -> Any:
+    def reset(self) -> Self:
         """Start again."""
         with self._lock:
-            return super().reset()
+            super().reset()
+        return self
 
-    def fast_forward(self, n: object) -> Any:
+    def fast_forward(self, n: object) -> Self:
         """Skip points.
 
         Parameters
@@ -225,7 +226,7 @@ class FamilyEngine(_SharedEngine):
         optimization: Literal["random-cd", "lloyd"] | None = None,
         rng: RngLike | None = None,
         seed: RngLike | None = None,
-        **options: Any,
+        **options: object,
     ) -> None:
         d, self.n = require_count("d", d), require_count("n", n)
         random = _started(rng, seed)

@@ -6,9 +6,10 @@ import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from evenroad._checks import as_row, require_count, require_positive
+from evenroad._files import Json
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
 from evenroad.cli.sampler import chosen_rule
@@ -89,7 +90,7 @@ class Certify:
         return 0 if held else 1
 
 
-def guarantees(certificate: Certificate) -> dict[str, Any]:
+def guarantees(certificate: Certificate) -> dict[str, Json]:
     """Return a certificate as plain JSON values."""
     least = certificate.dispersion if certificate.complete else math.inf
     clearances = {factor: certificate.clearance_for(factor) for factor in FACTORS}

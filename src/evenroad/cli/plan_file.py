@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from evenroad._arrays import Floats, set_fields
-from evenroad._files import read_json_file
+from evenroad._files import Json, read_json_file
 from evenroad._seal import has_digest
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import KEPT, made_of
@@ -68,7 +68,7 @@ def read_plan(file: Path, robot: str | None = None, options: dict[str, Any] | No
     return plan_file_of(read_json_file(file, "plan"), file, robot, options)
 
 
-def plan_file_of(record: Any, file: Path, robot: str | None = None, options: dict[str, Any] | None = None) -> PlanFile:
+def plan_file_of(record: Json, file: Path, robot: str | None = None, options: dict[str, Any] | None = None) -> PlanFile:
     """Return the plan of a record of a file; errors as :func:`read_plan`."""
     result, query = plan_of(record, file)
     if "map" in query:
@@ -105,7 +105,7 @@ def changed_since(kept: object, world: World) -> tuple[str, ...] | None:
 
 
 def problem_of(
-    query: dict[str, Any],
+    query: dict[str, Json],
     file: Path,
     start: Floats,
     goals: Floats,
@@ -126,7 +126,7 @@ def problem_of(
     return arm_problem(arm, query["scene"], start, list(goals), Reading(held=query["held"]), **apart, **options)
 
 
-def constraints_in(query: dict[str, Any], file: Path) -> Constraint | None:
+def constraints_in(query: dict[str, Json], file: Path) -> Constraint | None:
     """Return what a plan keeps on its way, by its query; plans of earlier versions do not say it."""
     given = {name: query[name] for name in KEPT if name in query}
     if not given:
@@ -141,7 +141,7 @@ def constraints_in(query: dict[str, Any], file: Path) -> Constraint | None:
     return with_tip(given_constraints(PlanArm(world=file, start=(), robot="", **given)), given.get("tip", ""))
 
 
-def _require_sound(file: Path, query: dict[str, Any]) -> None:
+def _require_sound(file: Path, query: dict[str, Json]) -> None:
     """Raise BrokenFile where a plan does not describe its robot as `evenroad plan` does."""
     kinds = {"joints": list, "held": dict, **FILES}
     sound = all(isinstance(query.get(name), kind) for name, kind in kinds.items())

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from evenroad._checks import require_positive
-from evenroad._files import require_writable_folder
+from evenroad._files import Json, require_writable_folder
 from evenroad._terminal import print_table
 from evenroad.cli.options import Option, Positional, options_of
 from evenroad.cli.plan import RobotOptions
@@ -20,7 +20,6 @@ from evenroad.scenes.scene import Scene
 if TYPE_CHECKING:
     from evenroad.task import TaskResult
     from evenroad.trajectory import Trajectory
-    from evenroad.trajectory.formats import Json
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from evenroad._files import Json
 from evenroad._seal import has_digest
 from evenroad.cli.plan_file import PlanFile, changed_since, constraints_in, plan_file_of, problem_of
 from evenroad.cli.run import run_task_of
@@ -19,7 +20,7 @@ from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.trajectory import Trajectory, arm_trajectory, controller_joints, limits_of, proved_in
-from evenroad.trajectory.formats import Json, trajectory_of
+from evenroad.trajectory.formats import trajectory_of
 from evenroad.trajectory.make import DEVIATION
 
 _SAME = 1e-6

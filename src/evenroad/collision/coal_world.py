@@ -222,7 +222,7 @@ def coal_shape(coal: ModuleType, shape: Shape) -> Solid:
     return kinds[shape.kind](*shape.size)
 
 
-def with_contacts(request: Any) -> Any:
+def with_contacts(request: Solid) -> Solid:
     """Return a request of coal's, set so that round shapes are not missed.
 
     Without contacts coal 3.0.3 leaves out the step that finds how deep two shapes are in each other, and with it about

@@ -6,7 +6,6 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -265,8 +264,7 @@ def capsule_around(points: Floats) -> Fitted:
 
     steps = np.vstack([np.zeros(4), 0.1 * np.eye(4)])
     options = dict(maxiter=200, xatol=1e-4, fatol=1e-4 * volume(best), initial_simplex=steps)
-    search: Any = minimize
-    found = search(lambda x: volume(moved(x, outer)), np.zeros(4), method="Nelder-Mead", options=options)
+    found = minimize(lambda x: volume(moved(x, outer)), np.zeros(4), method="Nelder-Mead", options=options)
     return min((best, moved(found.x, points)), key=volume)
 
 

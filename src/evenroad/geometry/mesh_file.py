@@ -8,7 +8,6 @@ import os
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -121,7 +120,7 @@ def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
         raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
 
 
-def _files_beside(file: Path) -> Any:
+def _files_beside(file: Path) -> object:
     """Return what gives trimesh the files that a mesh names: those in its folder, and no pipe or device."""
     from trimesh.resolvers import FilePathResolver
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -200,14 +199,17 @@ class CellTests:
         true, tree = bodies.shapes, moving_tree(first)
         self._links: list[tuple[Robot, Floats]] = []
         """Of each moving link that has true shapes a robot of it alone, and how fast joints move it."""
-        for link in dict.fromkeys(capsule.link for capsule in first.capsules) if true is not None else ():
-            of_link: dict[str, Any] = {
-                what: tuple(each for each in getattr(true, what) or () if each.link == link)
-                for what in ("capsules", "inner", "shapes")
-            }
-            robot = replace(first, pairs=(), padding=(), **of_link)
+        if true is None:
+            return
+        for link in dict.fromkeys(capsule.link for capsule in first.capsules):
+            capsules, inner, shapes = (
+                tuple(each for each in true.capsules if each.link == link),
+                tuple(each for each in true.inner or () if each.link == link),
+                tuple(each for each in true.shapes if each.link == link),
+            )
+            robot = replace(first, pairs=(), padding=(), capsules=capsules, inner=inner, shapes=shapes)
             speeds = shape_speeds(robot, tree, {link: 0})[0]
-            if of_link["shapes"] and speeds.any():
+            if shapes and speeds.any():
                 self._links.append((robot, speeds))
 
     def unblocked(self, half: Floats, middles: Floats) -> Bools:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
-from evenroad._arrays import Floats, set_fields
+from evenroad._arrays import Array, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, shown
@@ -199,7 +199,7 @@ class PointSet:
     def __iter__(self) -> Iterator[Floats]:
         return iter(self.points)
 
-    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> Array:
         points = self.points if dtype is None else below_one(self.points, dtype)
         return np.array(points, dtype=dtype, copy=True) if copy else np.asarray(points, dtype=dtype)
 

@@ -18,7 +18,7 @@ import yaml
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_extra
-from evenroad._files import atomic_write, read_json_file
+from evenroad._files import Json, atomic_write, read_json_file
 from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, UnknownName
 from evenroad.trajectory.checked import require_within_limits
@@ -29,8 +29,6 @@ from evenroad.trajectory.urscript import movej_script, servoj_script
 
 FORMAT = "evenroad trajectory 1"
 TOPIC = "/joint_trajectory"
-Json: TypeAlias = Any
-"""A value of JSON, which is checked as it is read."""
 Message: TypeAlias = Any
 """A message of ROS 2, whose types are made at run time."""
 _TABLES = ("positions", "velocities", "accelerations")

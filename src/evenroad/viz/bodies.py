@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from io import BytesIO
-from typing import Any
 
 import numpy as np
 from PIL import ImageColor
@@ -162,13 +161,13 @@ def _drawn(robot: Robot, file: RobotFile, *, as_drawn: bool) -> dict[str, Part]:
 
 def _written(parts: Mapping[str, Part]) -> bytes:
     out = BytesIO()
-    arrays: dict[str, Any] = {
+    arrays = {
         "links": np.array(list(parts)),
         "cuts": np.cumsum([len(part.corners) for part in parts.values()])[:-1],
         "corners": np.concatenate([part.corners for part in parts.values()], dtype=np.float32),
         "normals": np.concatenate([part.normals for part in parts.values()]).astype(np.float16),
     }
-    np.savez(out, **arrays)
+    np.savez(out, allow_pickle=False, **arrays)
     return out.getvalue()
 
 

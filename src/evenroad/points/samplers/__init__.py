@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from inspect import signature
-from typing import Any, Protocol
+from typing import Protocol
 
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
@@ -65,7 +65,7 @@ ALIASES = {"random": "uniform"}
 """Other names of samplers."""
 
 
-def make_sampler(name: str, **options: Any) -> NamedSampler:
+def make_sampler(name: str, **options: object) -> NamedSampler:
     """Return the sampler of this name, one of :data:`SAMPLERS`, with its options; UnknownName for an unknown one."""
     known = ALIASES.get(name, name) if isinstance(name, str) else None
     if known not in SAMPLERS:
@@ -77,7 +77,7 @@ def make_sampler(name: str, **options: Any) -> NamedSampler:
 
 
 @explains_calls
-def draw(name: str, n: int, d: int, *, rng: RngLike = 0, **options: Any) -> PointSet:
+def draw(name: str, n: int, d: int, *, rng: RngLike = 0, **options: object) -> PointSet:
     """Draw a set of points in the unit cube.
 
     Parameters
