@@ -1,4 +1,4 @@
-"""Reading clouds of points: .ply, .pcd, .xyz and .npy files."""
+"""Readers of point clouds: .ply, .pcd, .xyz and .npy files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _PLY_ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": "
 _PCD_TYPES = {"F": "f", "I": "i", "U": "u"}
 _LONGEST_HEADER = 1 << 16
 _MOST_COLUMNS, _FEW_COLUMNS = 32, 8
-"""Largest number of columns of a point, such as colours, normals and times, and of one among fewer points."""
+"""Largest number of columns (coordinates, colours, normals, times) with more points than columns, and otherwise."""
 _SURFACES = ("face", "tristrips")
 """Elements of a .ply that make it a mesh."""
 _PCD = Kind(("FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "POINTS", "DATA"), harmless={"VERSION", "VIEWPOINT"})
@@ -32,9 +32,9 @@ _PCD = Kind(("FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "POINTS", "DA
 def load_cloud(path: str | os.PathLike[str]) -> Floats:
     """Read the points of a cloud from a file by its suffix, (n, 3); other columns are ignored.
 
-    ``.ply`` (ascii or binary, its element ``vertex``), ``.pcd`` (ascii, binary or compressed), ``.xyz`` (text: three
-    numbers or more per line, ``#`` begins a comment), ``.npy`` (an array of three columns or more, or of fields x, y,
-    z).  Rows of NaN in .pcd files are ignored: they are pixels without a depth.
+    Formats are ``.ply`` (ascii or binary, its element ``vertex``), ``.pcd`` (ascii, binary or compressed), ``.xyz``
+    (text: three numbers or more per line, ``#`` begins a comment), and ``.npy`` (an array of three columns or more, or
+    of fields x, y, z).  Rows of NaN in .pcd files are ignored: they are pixels without a depth.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def _read_npy(file: Path) -> npt.NDArray[np.generic]:
 
 
 def _require_points(file: Path, rows: int, columns: int) -> None:
-    """Raise BrokenFile for a table that is no list of points: an image of depths, or points in its columns."""
+    """Raise BrokenFile for a table that is not a list of points: a depth image, or points in columns."""
     if columns > _MOST_COLUMNS or (columns > _FEW_COLUMNS and columns >= rows):
         raise BrokenFile(
             f"{file}, {rows} x {columns} numbers, is no list of points: these have a row each, x y z first"
@@ -111,7 +111,7 @@ def _read_ply(file: Path) -> Floats:
             fields.append((words[2], order + _PLY_TYPES[words[1]], (1,)))
     if faces := sum(each for name, each in elements if name in _SURFACES):
         raise BrokenFile(f"{file} is a mesh of {faces} faces, and not a cloud of their corners: read it as shape: mesh")
-    # An ascii file has one line per element behind the points; binary ones would need a reader of lists.
+    # An ascii file has one line per element after the points. Binary lists are not read.
     behind = sum(count for _, count in elements) - count
     if behind and kind == "ascii":
         lines = [line for line in data.splitlines() if line.strip()]
@@ -158,7 +158,7 @@ def _rows_of_columns(data: bytes, widths: list[int], count: int) -> bytes:
 
 
 def _unpacked(data: bytes, size: int) -> bytes:
-    """Return what LZF packed (M. Lehmann's liblzf): bytes as they are, and copies of what came shortly before."""
+    """Return the bytes that LZF packed (M. Lehmann's liblzf): literal bytes, and copies of earlier ones."""
     out, i = bytearray(), 0
     while i < len(data) and len(out) <= size:
         first = data[i]
@@ -173,7 +173,7 @@ def _unpacked(data: bytes, size: int) -> bytes:
         if start < 0:
             raise ValueError("its compressed data are damaged")
         piece = out[start : start + length]
-        # A copy may run into what it writes.
+        # A copy may overlap the bytes that it writes.
         out += (piece * (length // len(piece) + 1))[:length]
     if len(out) != size or i != len(data):
         raise ValueError("its compressed data are damaged")

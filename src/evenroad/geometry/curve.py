@@ -1,4 +1,4 @@
-"""Curve: poses that a tip passes one after the other, close enough together that what lies between hardly matters."""
+"""Curve: poses of a tip in sequence, so close together that the motion between two of them hardly matters."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 
 if TYPE_CHECKING:
-    # Loaded where curves are made: a plan without them does without it.
+    # Imported late: only curves need it.
     from scipy.spatial.transform import Rotation
 
 STEP, TURN = 0.005, 0.05
@@ -26,7 +26,7 @@ MOST = 100_000
 """Largest number of poses of a curve."""
 
 _CORNER = 1e-3
-"""Largest change of direction that is no corner [rad]."""
+"""Largest change of direction that does not count as a corner [rad]."""
 _FLAT = 1e-6
 """Sine of the angle below which three points lie on a line."""
 
@@ -44,15 +44,15 @@ class Curve:
 
     @property
     def lengths(self) -> Floats:
-        """How far along the curve each pose is, (n,) [m]."""
+        """Arc length from the start of the curve to each pose, (n,) [m]."""
         return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.poses[:, 9:], axis=0), axis=1))])
 
 
 def polyline(poses: Sequence[Pose], blend: float = 0.0) -> Curve:
-    """Return straight lines through two poses or more, which turn steadily.
+    """Return straight lines through two poses or more, with a constant rate of rotation on each line.
 
-    With a `blend` [m] the curve leaves its lines as far before each inner pose, or halfway, and goes round the corner:
-    a parabola that is never farther from the pose than that.
+    With a `blend` [m], a parabola rounds each inner pose.  It leaves the line at this distance from the pose, or
+    halfway along the line if that is shorter, and is never farther from the pose than that.
     """
     at, turned = _read(poses)
     given, corners = _rows(at, turned), _corners(at, turned)
@@ -61,7 +61,7 @@ def polyline(poses: Sequence[Pose], blend: float = 0.0) -> Curve:
     cut[1:-1] = np.minimum(blend, 0.5 * np.minimum(legs[:-1], legs[1:]))
     shares = cut[:-1] / np.maximum(legs, 1e-300), 1.0 - cut[1:] / np.maximum(legs, 1e-300)
     first, middle, last = (_on(at, turned, share) for share in (shares[0], 0.5 * (shares[0] + shares[1]), shares[1]))
-    # Each piece is a parabola from a pose towards a middle one to another: of a line that is its own middle.
+    # Each piece is a parabola from a pose towards a middle one to another. A line has its own middle there.
     rounded = 1 + np.flatnonzero(cut[1:-1])
     order = np.argsort(np.concatenate([np.arange(len(legs)), rounded - 0.5]), kind="stable")
     pieces = (first, last[rounded - 1]), (middle, given[rounded]), (last, first[rounded])
@@ -93,7 +93,7 @@ def spline(poses: Sequence[Pose]) -> Curve:
 
 
 def circle(start: Pose, via: Pose, to: Pose) -> Curve:
-    """Return the arc of a circle from a pose through another to a third one, which turns smoothly.
+    """Return the circular arc from a pose through another to a third one; rotations change smoothly.
 
     Raises InvalidValue if the three are on a line.
     """
@@ -154,9 +154,9 @@ def _rows(positions: Floats, rotations: Rotation) -> Floats:
 
 
 def _count(lengths: Floats, turns: Floats, bent: Floats) -> Ints:
-    """Return how many equal steps each piece has; `bent` are bounds on the second derivatives by its share.
+    """Return the number of equal steps of each piece; `bent` bounds its second derivative by its parameter in [0, 1].
 
-    A chord of a share h is no farther from its piece than h^2 / 8 times that.
+    A chord over a parameter interval h is at most h^2 / 8 times that bound away from its piece.
     """
     steps = np.ceil(np.maximum.reduce([lengths / STEP, turns / TURN, np.sqrt(bent / (8.0 * SAG))]) - 1e-9)
     if steps.sum() > MOST:
@@ -185,9 +185,9 @@ def _parabolas(a: Floats, c: Floats, b: Floats) -> tuple[Floats, Ints]:
 
 
 def _corners(at: Floats, turned: Rotation) -> Ints:
-    """Return the inner poses at which a polyline's direction, or its turning, jumps."""
+    """Return the inner poses at which a polyline's direction or its axis of rotation jumps."""
     legs, turns = np.diff(at, axis=0), (turned[:-1].inv() * turned[1:]).as_rotvec()
-    # Turning in the frame of the root.
+    # Rotation vectors in the frame of the root.
     turns = turned[:-1].apply(turns)
     lengths = np.linalg.norm(legs, axis=1)
     jumps = np.zeros(len(at), dtype=bool)

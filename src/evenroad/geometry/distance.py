@@ -34,8 +34,8 @@ def point_distance(shape: Shape, points: Floats) -> Floats:
 def segment_distance(first: Floats, second: Floats) -> Floats:
     """Return the distances of pairs of segments, (n, 2, 3) each, endpoints in the second axis: (n,).
 
-    After C. Ericson, Real-Time Collision Detection (2005), section 5.1.9, with the components across the first segment,
-    which are accurate for nearly parallel ones.  A segment may be a point.
+    The method is that of C. Ericson, Real-Time Collision Detection (2005), section 5.1.9.  Components across the first
+    segment keep it accurate for nearly parallel segments.  A segment may be a point.
     """
     along, other = first[:, 1] - first[:, 0], second[:, 1] - second[:, 0]
     between = first[:, 0] - second[:, 0]
@@ -45,7 +45,7 @@ def segment_distance(first: Floats, second: Floats) -> Floats:
     across = other - (b / safe)[:, np.newaxis] * along
     between_across = between - (c / safe)[:, np.newaxis] * along
     squared = _dot(across, across)
-    # For parallel segments any second parameter does: the two steps after it find the closest points.
+    # For parallel segments any second parameter works: the next two steps find the closest points.
     t = _clamped(_dot(across, between_across), np.where(squared > 1e-30, squared, 0.0))
     s = _clamped(b * t - c, a)
     t = _clamped(b * s + f, e)
@@ -64,6 +64,6 @@ def _dot(first: Floats, second: Floats) -> Floats:
 
 
 def _clamped(numerator: Floats, denominator: Floats) -> Floats:
-    """Return numerator / denominator within [0, 1]; 0 where the denominator is."""
+    """Return numerator / denominator, clipped to [0, 1]; 0 if the denominator is 0."""
     safe = np.where(denominator > 0.0, denominator, 1.0)
     return np.where(denominator > 0.0, np.clip(numerator / safe, 0.0, 1.0), 0.0)

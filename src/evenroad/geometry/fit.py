@@ -31,18 +31,19 @@ _SHOWN = 2000
 _COMPARED = 128
 """Number of directions in which corners of parts are compared."""
 _AT_ONCE = 1 << 16
-"""Number of products of points and directions that are looked at together."""
+"""Number of products of points and directions that are computed together."""
 
 
 def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:
     """Return capsules, in the frame of the shape's link, whose union contains a shape.
 
-    A sphere and a capsule are kept.  A cylinder gets the smallest capsule on its axis.  A box gets up to 4 capsules
+    A sphere or capsule stays as it is.  A cylinder gets the smallest capsule on its axis.  A box gets up to 4 capsules
     along its longest edge, side by side, with nearly square cross-sections.  A mesh gets up to 4, see
-    :func:`capsules_around_mesh`.  Raises as :func:`evenroad.geometry.load_mesh` for a mesh, InvalidValue for a cloud.
+    :func:`capsules_around_mesh`.  Raises the errors of :func:`evenroad.geometry.load_mesh` for a mesh, and
+    InvalidValue for a cloud.
     """
     rotation, xyz = shape.pose.rotation_matrix, np.array(shape.pose.xyz)
-    # The pose rounds in the last digits; every vertex must stay covered.
+    # The pose rounds the last digits, and every vertex must stay covered.
     exact = isinstance(shape, Sphere | Capsule)
 
     def placed(fitted: Fitted) -> Capsule:
@@ -98,7 +99,7 @@ def _around_box(size: Floats) -> list[tuple[Floats, Floats, float]]:
 class _Part:
     """Triangles, (t, 3), between points, a capsule around them, and the two parts of their best split, if any.
 
-    `outer`, (n, 3), are outer corners of some of them, around which the capsule is: it only compares splits.
+    `outer`, (n, 3), are outer corners of some triangles.  The capsule contains only these: it serves to compare splits.
     """
 
     points: Floats
@@ -109,7 +110,7 @@ class _Part:
 
     @property
     def gain(self) -> float:
-        """Volume that the split saves; negative where it costs volume."""
+        """Volume that the split saves; negative if it adds volume."""
         if not self.halves:
             return -math.inf
         return volume(self.capsule) - sum(volume(half.capsule) for half in self.halves)
@@ -118,9 +119,9 @@ class _Part:
 def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
     """Return up to 4 capsules (a, b, radius) such that every triangle lies within one of them.
 
-    The capsule whose split saves most is split repeatedly, and the number of capsules with the least cost is taken: a
+    The capsule whose split saves most is split repeatedly, and the number of capsules with the least cost is used.  A
     link that is thick at both ends gains nothing before its second split.  A split divides triangles by their centres
-    along a coordinate or principal axis.  A capsule is convex, so it contains triangles whose corners it contains.
+    along a coordinate or principal axis.  A capsule is convex, so it contains a triangle if it contains its corners.
     """
     parts = [_splittable(_part(*divided(vertices, triangles)))]
     found = [parts]
@@ -163,21 +164,21 @@ def _splittable(part: _Part) -> _Part:
 
 
 def _part(points: Floats, triangles: Ints, known: Floats | None = None) -> _Part:
-    """Return a part of these triangles; the corners of their hull are among those that are `known`, if any are."""
+    """Return a part of these triangles; `known` points, if given, include the corners of their hull."""
     shown = triangles[:: max(1, len(triangles) // _SHOWN)]
     outer = farthest(used(points, shown), _COMPARED) if known is None else known
     return _Part(points, triangles, outer, rough_capsule_around(outer))
 
 
 def farthest(points: Floats, count: int) -> Floats:
-    """Return those of points, (n, 3), that are farthest along one of some directions, spread over the sphere."""
+    """Return the points of (n, 3) that are farthest along some direction of a set spread over the sphere."""
     # A spiral by the golden angle.
     z = 1.0 - (2.0 * np.arange(count) + 1.0) / count
     turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
     around = np.sqrt(1.0 - z**2)
     directions = np.stack([around * np.cos(turn), around * np.sin(turn), z], axis=1)
     most, which = np.full(count, -np.inf), np.zeros(count, dtype=np.int64)
-    # Of so few at a time the products stay in the processor's cache, and no threads wait for each other.
+    # Few products at a time stay in the processor's cache, and no threads wait for each other.
     some = max(1, _AT_ONCE // count)
     for first in range(0, len(points), some):
         along = directions @ points[first : first + some].T
@@ -225,10 +226,10 @@ def divided(points: Floats, triangles: Ints, share: float = _LONGEST_EDGE) -> tu
         lengths = np.linalg.norm(corners - corners[:, [1, 2, 0]], axis=2)
         long = lengths.max(axis=1) > longest
         done.append(triangles[~long])
-        # Turned so that the longest edge runs from the first to the second corner.
+        # Rotate the corners so that the longest edge runs from the first to the second.
         first = lengths[long].argmax(axis=1)[:, np.newaxis]
         a, b, c = np.take_along_axis(triangles[long], (first + np.arange(3)) % 3, axis=1).T
-        # Two triangles at one edge have a middle each.
+        # Two triangles at one edge each have their own middle point.
         middle = len(points) + np.arange(len(a))
         points = np.concatenate([points, 0.5 * (points[a] + points[b])])
         triangles = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
@@ -238,9 +239,9 @@ def divided(points: Floats, triangles: Ints, share: float = _LONGEST_EDGE) -> tu
 SAMPLES = 1 << 15
 """Number of points that estimate the volume of a union: a standard error of about half a per cent."""
 _LEAST_RADIUS = 1e-6
-"""Radius around points in a line [m]."""
+"""Radius around collinear points [m]."""
 _SHARES = np.array([0.0, 0.1, 0.2, 0.35, 0.6, 1.0])
-"""Radii that are tried on an axis, as shares of the points' reach along it beside the least one."""
+"""Radii to try on an axis besides the least one, as shares of the points' reach along it."""
 
 
 def capsule_around(points: Floats) -> Fitted:
@@ -250,7 +251,7 @@ def capsule_around(points: Floats) -> Fitted:
     """
     from scipy.optimize import minimize
 
-    # Some outer points find the axis; the capsule on it is around all.
+    # A few outer points suffice to find the axis; the capsule on it contains all points.
     outer = farthest(points, 2 * _COMPARED)
     centre, axes = _starts(outer)
     frame = _frame(min(axes, key=lambda axis: volume(_smallest_on(outer, centre, axis[np.newaxis]))))
@@ -289,7 +290,7 @@ def _starts(points: Floats) -> tuple[Floats, Floats]:
 def _smallest_on(points: Floats, origin: Floats, axes: Floats) -> Fitted:
     """Return the smallest capsule around the points on a line through `origin` along one of the axes, (n, 3).
 
-    Six are tried on each: with the least radius that the line allows, and with more, where shorter caps save volume.
+    Six radii are tried on each: the least that the line allows, and larger ones, whose shorter segments save volume.
     """
     relative = points - origin
     along = axes @ relative.T
@@ -297,7 +298,7 @@ def _smallest_on(points: Floats, origin: Floats, axes: Floats) -> Fitted:
     span = 0.5 * np.ptp(along, axis=1)[:, np.newaxis]
     radius = np.hypot(np.sqrt(squared.max(axis=1))[:, np.newaxis], _SHARES * span) * (1.0 + 1e-12) + 1e-12 * span
     reach = np.sqrt(np.maximum(radius[:, :, np.newaxis] ** 2 - squared[:, np.newaxis], 0.0))
-    # A point is within the cap of an end that is no further than `reach` from it along the axis.
+    # The cap of an end contains a point if the end is at most `reach` from it along the axis.
     low = (along[:, np.newaxis] + reach).min(axis=2)
     high = (along[:, np.newaxis] - reach).max(axis=2)
     middle = 0.5 * (low + high)

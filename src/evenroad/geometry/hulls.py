@@ -1,4 +1,4 @@
-"""Convex hulls that contain a shape, and how to split them where they contain too much."""
+"""Convex hulls that contain a shape, and their splits where they contain too much."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from evenroad.geometry.mesh import TriangleMesh, extreme
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 SIDES = 32
-"""Number of sides of the prism around a cylinder, which reaches half a per cent of the radius beyond."""
+"""Number of sides of the prism around a cylinder; it reaches half a per cent of the radius beyond the cylinder."""
 _FEW = 64
 """Largest number of corners of a hull that is not thinned."""
 _THINNED, _SHARE = 3e-4, 5e-3
 """Largest height of a corner that thinning removes [m], and in parts of the hull's extent."""
 _MOST_CORNERS = 2048
-"""Largest number of corners of a convex mesh that gets a closer hull: of more, one would take gigabytes."""
+"""Largest number of corners of a convex mesh that gets a closer hull; for more corners it would take gigabytes."""
 _SIDES_TRIED = 4
 _ROUNDING = 1e-9
 _AT_ONCE = 1 << 16
 """Number of products of points and directions that are made together."""
 _DEEP = 1e-6
-"""Depth in a hull from which on its convex mesh fills it [m]; a proof keeps a hundred times that."""
+"""Depth in a hull below which its convex mesh fills it [m]; a proof keeps a hundred times that."""
 _MOST_COMPARED = 10_000_000
-"""Largest number of pairs of a triangle and a side of the hull; a mesh of more is not said to be solid."""
+"""Largest number of pairs of a triangle and a side of the hull; a mesh with more is not called solid."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,14 +68,14 @@ class Hull:
 
 
 def hull_around(points: Floats, radius: float, link: str, *, solid: bool = False) -> Hull:
-    """Return the hull of points, (n, 3), widened by `radius`, and by what rounding may lose."""
+    """Return the hull of points, (n, 3), widened by `radius` and by a margin for rounding."""
     return Hull(points, radius + _ROUNDING * (1.0 + float(np.abs(points).max())), link, solid)
 
 
 def thinned(corners: Floats, little: float) -> tuple[Floats, float]:
     """Return some of a hull's corners, (n, 3), and an upper bound of the distance of the others from their hull [m].
 
-    No other is beyond one of its sides by more than `little` [m].
+    No other corner is more than `little` [m] beyond a side of that hull.
     """
     from scipy.spatial import ConvexHull, QhullError
 
@@ -86,7 +86,7 @@ def thinned(corners: Floats, little: float) -> tuple[Floats, float]:
         except QhullError:
             return corners, 0.0
         beyond = products(out, hull.equations[:, :3]) + hull.equations[:, 3]
-        # What is inside stays there: the hull only grows.
+        # The hull only grows, so points inside stay inside.
         is_out = beyond.max(axis=1) > _ROUNDING
         out, beyond = out[is_out], beyond[is_out]
         most = beyond.max(axis=0, initial=0.0)
@@ -94,7 +94,7 @@ def thinned(corners: Floats, little: float) -> tuple[Floats, float]:
             break
         added = beyond[:, most > max(0.7 * most.max(), little)].argmax(axis=0)
         few = np.concatenate([few, out[np.unique(added)]])
-    # The nearest side is one of those that a point is farthest beyond; any of them bounds its distance.
+    # The distance to any side that a point is farthest beyond bounds its distance from the hull.
     tried = np.argpartition(-beyond, _SIDES_TRIED - 1, axis=1)[:, :_SIDES_TRIED] if len(out) else np.zeros((0, 1), int)
     sides = few[hull.simplices[tried]]
     nearest = [distances(out, sides[:, k]) for k in range(sides.shape[1])]
@@ -104,7 +104,7 @@ def thinned(corners: Floats, little: float) -> tuple[Floats, float]:
 def products(points: Floats, directions: Floats) -> Floats:
     """Return the products of points, (n, 3), and directions, (d, 3), as (n, d).
 
-    They are made of so few points at a time that no threads wait for each other, which costs more than the products.
+    They are made of few points at a time, so that no threads wait for each other: waiting costs more than the products.
     """
     made, some = np.empty((len(points), len(directions))), max(1, _AT_ONCE // len(directions))
     for first in range(0, len(points), some):
@@ -130,8 +130,8 @@ def distances(points: Floats, sides: Floats) -> Floats:
 class Piece:
     """A hull around convex `parts`, (k, corners, 3) [m], widened by `radius`.
 
-    Parts are the triangles of a mesh; a closed convex mesh, and any other shape, is one part.  For a cylinder that is a
-    prism inside, and the hull is a prism around it.  The parts' corners are `points`, (n, 3), by their `rows`, (k, c).
+    Parts are the triangles of a mesh; a closed convex mesh, or any other shape, is one part.  A cylinder's part is a
+    prism inside it, and its hull a prism around it.  The parts' corners are `points`, (n, 3), by their `rows`, (k, c).
     """
 
     hull: Hull
@@ -169,7 +169,7 @@ def piece_of(shape: Shape) -> Piece:
         hull = _hull_around(shape.pose.apply(mesh.outer), shape.link)
         if not mesh.is_convex:
             return Piece(hull, shape.pose.apply(mesh.vertices), mesh.triangles)
-        # Split, it would lose its inside, and gain nothing.
+        # A split would lose the inside, and gain nothing.
         return Piece.solid(replace(hull, solid=_is_on_its_hull(mesh)), shape.pose.apply(mesh.outer))
     else:
         raise InvalidValue(f"no hull is made around a {shape}")
@@ -181,8 +181,8 @@ def piece_of(shape: Shape) -> Piece:
 def _is_on_its_hull(mesh: TriangleMesh) -> bool:
     """Return whether a convex mesh contains all points that are a micrometre deep in its hull.
 
-    It does if every triangle is that near to a side of the hull: then the mesh winds around all deeper points equally
-    often, and once, since its volume is the hull's.
+    It does if every triangle is that near to a side of the hull.  Then the mesh winds around all deeper points equally
+    often, and exactly once, since its volume is the hull's.
     """
     from scipy.spatial import ConvexHull
 
@@ -194,8 +194,9 @@ def _is_on_its_hull(mesh: TriangleMesh) -> bool:
 
 
 def halves(piece: Piece) -> tuple[Piece, ...]:
-    """Return two pieces in place of one of a mesh, for a convex one a piece with more of its corners; the piece itself
-    where neither is possible.
+    """Return two pieces in place of one of a mesh, or for a convex mesh a piece with more of its corners.
+
+    If neither is possible, return the piece itself.
     """
     if len(piece.parts) == 1 and len(piece.hull.points) < len(piece.parts[0]) <= _MOST_CORNERS:
         points, beyond = thinned(piece.parts[0], 0.25 * piece.hull.radius)
@@ -213,7 +214,7 @@ def halves(piece: Piece) -> tuple[Piece, ...]:
 
 
 def _hull_around(points: Floats, link: str) -> Hull:
-    """Return a hull around the corners of another, of fewer corners where it has many."""
+    """Return a hull around the corners of another, with fewer corners if that one has many."""
     beyond = 0.0
     if len(points) > _FEW:
         points, beyond = thinned(points, max(_THINNED, _SHARE * float(np.ptp(points, axis=0).max())))
@@ -224,7 +225,7 @@ def _box_volume(corners: Floats) -> float:
     """Return the volume of a box around triangles, along the coordinate axes or the triangles' own [m^3]."""
     points = corners.reshape(-1, 3)
     _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    # The margin gives flat ones a volume.
+    # The margin gives flat boxes a volume.
     return min(float(np.prod(np.ptp(points @ turned.T, axis=0) + 1e-4)) for turned in (np.eye(3), axes))
 
 
@@ -282,7 +283,7 @@ def _inside_piece(piece: Piece, points: Floats) -> Bools:
 
 def winding_number(triangles: Floats, point: Floats) -> float:
     """Return how many times a surface, (t, 3, 3), goes around a point, (3,) (Van Oosterom and Strackee 1983)."""
-    # Coordinates in rows: what is done to all triangles at once runs along memory.
+    # Coordinates are in rows, so that operations on all triangles run along memory.
     a, b, c = np.ascontiguousarray((triangles - point).transpose(1, 2, 0))
     la, lb, lc = (np.sqrt(_dots(each, each)) for each in (a, b, c))
     over = _dots(a, np.cross(b, c, axis=0))

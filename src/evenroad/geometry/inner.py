@@ -1,4 +1,4 @@
-"""Capsules inside of a shape: if one of them touches something, the shape does."""
+"""Capsules inside a shape: if one of them touches a body, the shape touches it, too."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 MOST_SIDE_BY_SIDE = 8
-"""Largest number of capsules of a box; between those of a wider one there are gaps."""
+"""Largest number of capsules of a box; a wider box has gaps between them."""
 MOST_BALLS = 12
 """Largest number of balls of a mesh."""
 _ACROSS = 20
@@ -23,19 +23,19 @@ _ACROSS = 20
 _SMALLEST = 0.25
 """Least radius of a ball, as a share of the largest one's."""
 _APART = 0.9
-"""Factor on the radii of balls outside of which further centres lie."""
+"""Factor on the radii of balls; further centres lie outside of the balls so scaled."""
 _FINE = 1.0 / 24.0
-"""Length of the sides of triangles by whose corners centres are chosen, in parts of the mesh's extent."""
+"""Longest side of the triangles whose corners guide the choice of centres, in parts of the mesh's extent."""
 _SHRUNK = 1e-9
-"""Share of a length by which capsules shrink: rounding must not carry one out of its shape."""
+"""Share of a length by which capsules shrink, so that rounding does not carry one out of its shape."""
 
 
 def capsules_inside(shape: Shape) -> tuple[Capsule, ...]:
-    """Return capsules inside a shape, in the frame of its link; none where none is known.
+    """Return capsules inside a shape, in the frame of its link; empty if none are known.
 
-    A sphere and a capsule are kept.  A cylinder holds a capsule on its axis, a flat one several across.  A box holds
-    capsules along its longest edge, side by side.  A closed mesh holds balls.  An open mesh and a point cloud hold
-    none.  Raises as :func:`evenroad.geometry.load_mesh` for a mesh.
+    A sphere or capsule stays as it is.  A cylinder gets a capsule on its axis, a flat one several across.  A box gets
+    capsules along its longest edge, side by side.  A closed mesh gets balls.  An open mesh and a point cloud get
+    none.  Raises the errors of :func:`evenroad.geometry.load_mesh` for a mesh.
     """
     rotation, xyz = shape.pose.rotation_matrix, np.array(shape.pose.xyz)
     exact = isinstance(shape, Sphere | Capsule)
@@ -49,7 +49,7 @@ def capsules_inside(shape: Shape) -> tuple[Capsule, ...]:
 
 
 def inner_of(shapes: Iterable[Shape]) -> tuple[Capsule, ...] | None:
-    """Return capsules inside shapes; None where the capsules fitted to them are these shapes."""
+    """Return capsules inside shapes; None if the capsules fitted to them are the shapes themselves."""
     every = tuple(shapes)
     if all(isinstance(shape, Sphere | Capsule) for shape in every):
         return None
@@ -74,7 +74,7 @@ def _in_box(size: Floats) -> list[Fitted]:
     thin, middle, long = np.argsort(size, kind="stable")
     radius, axes = 0.5 * size[thin], np.eye(3)
     aside, along = 0.5 * size[middle] - radius, (0.5 * size[long] - radius) * axes[long]
-    # Axes at most a radius apart, as far as there are enough of them.
+    # Axes are at most a radius apart, unless that takes too many.
     count = min(1 + math.ceil(aside / radius - 1e-9), MOST_SIDE_BY_SIDE)
     centres = [offset * axes[middle] for offset in (np.linspace(-aside, aside, count) if count > 1 else [0.0])]
     return [(centre - along, centre + along, float(radius)) for centre in centres]
@@ -90,11 +90,11 @@ def _in_cylinder(radius: float, half: float) -> list[Fitted]:
 
 
 def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
-    """Return balls inside the closed parts of a mesh; none where their sides cannot tell inside from outside."""
+    """Return balls inside the closed parts of a mesh; none if the triangles do not show which side is inside."""
     from scipy.spatial import cKDTree
 
     closed = mesh.closed_parts.closed
-    # Where sides do not tell nobody knows what is solid.
+    # If the triangles do not show which side is inside, no part is known to be solid.
     if not mesh.closed_parts.oriented or not closed.any():
         return []
     mesh = mesh.compact
@@ -118,10 +118,10 @@ def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
             break
         centre = middles[k]
         left[k] = False
-        # Grid and tree only propose: all triangles decide whether the ball is inside.
+        # Grid and tree only propose a ball; all triangles decide whether it is inside.
         if not is_inside(corners, centre):
             continue
-        # Corners of others are farther away than some point of the surface.
+        # The corners of other triangles are farther away than the nearest point of the surface.
         some = np.flatnonzero(np.abs(along - centre[0]) <= away[k] + farthest)
         near = corners[some[np.linalg.norm(centroids[some] - centre, axis=1) <= away[k] + reach[some]]]
         radius = float(distances(np.broadcast_to(centre, (len(near), 3)), near).min())
@@ -134,7 +134,7 @@ def _in_mesh(mesh: TriangleMesh) -> list[Fitted]:
 def is_inside(corners: Floats, point: Floats) -> bool:
     """Return whether closed surfaces, triangles (t, 3, 3), go around a point, (3,), exactly once.
 
-    Where they do twice, as around a hollow of wrong orientation, it is not inside.
+    A point that they go around twice, as in a hollow of wrong orientation, is not inside.
     """
     return abs(abs(winding_number(corners, point)) - 1.0) < 1e-3
 
@@ -144,21 +144,21 @@ def _points_inside(corners: Floats) -> Floats:
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     if not (high > low).all():
         return np.empty((0, 3))
-    # Off the middle, where edges often are.
+    # Lines avoid the middle, where edges often are.
     steps = (np.arange(_ACROSS) + 0.4837) / _ACROSS
     x, y, z = (low[axis] + (high[axis] - low[axis]) * steps for axis in range(3))
     first = np.searchsorted(x, corners[:, :, 0].min(axis=1)), np.searchsorted(y, corners[:, :, 1].min(axis=1))
     end = np.searchsorted(x, corners[:, :, 0].max(axis=1)), np.searchsorted(y, corners[:, :, 1].max(axis=1))
     turns = np.zeros((_ACROSS, _ACROSS, _ACROSS + 1))
     wide, deep = end[0] - first[0], end[1] - first[1]
-    # All lines of a triangle's own rectangle, triangle after triangle.
+    # Each triangle is tested against all lines of its own rectangle.
     count = wide * deep
     row = np.repeat(np.arange(len(corners)), count)
     rank = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
     i, j = first[0][row] + rank // np.maximum(deep[row], 1), first[1][row] + rank % np.maximum(deep[row], 1)
     hit, height, sign = _crossed(corners[row], x[i], y[j])
     np.add.at(turns, (i[hit], j[hit], np.searchsorted(z, height[hit])), sign[hit])
-    # What lies above a crossing is on its other side.
+    # Points above a crossing are on its other side.
     around = np.cumsum(turns, axis=2)
     at_cap = np.abs(around[:, :, -1:]) < 0.5
     inside = (np.abs(np.abs(around[:, :, :-1]) - 1.0) < 0.5) & at_cap
@@ -167,7 +167,7 @@ def _points_inside(corners: Floats) -> Floats:
 
 
 def _crossed(corners: Floats, x: Floats, y: Floats) -> tuple[Bools, Floats, Floats]:
-    """Return which triangles, (n, 3, 3), a line along z at x, y, (n,), crosses, at which height and from which side."""
+    """Return which triangles, (n, 3, 3), lines along z at x, y, (n,), cross, and the heights and sides of crossings."""
     flat = corners[:, :, :2] - np.stack([x, y], axis=1)[:, np.newaxis]
     areas = np.stack(
         [flat[:, k, 0] * flat[:, (k + 1) % 3, 1] - flat[:, k, 1] * flat[:, (k + 1) % 3, 0] for k in range(3)],

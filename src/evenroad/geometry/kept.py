@@ -1,4 +1,4 @@
-"""What was fitted to a mesh, kept between runs: the same file serves many robots, SRDFs and groups."""
+"""A cache on disk of capsules fitted to meshes: the same file serves many robots, SRDFs and groups."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from evenroad.geometry.mesh import TriangleMesh
 Fitted = tuple[Floats, Floats, float]
 """End points a and b, each (3,), and radius of a capsule."""
 _FORMAT = 2
-"""Version of what is kept: it counts up when the same mesh gets other capsules."""
+"""Version of the cache's contents. It increases when the same mesh gets other capsules."""
 _FEW = 300
-"""Number of triangles up to which fitting is quicker than reading."""
+"""Number of triangles up to which fitting is faster than reading the cache."""
 
 
 def fitted_once(what: str, mesh: TriangleMesh, fit: Callable[[TriangleMesh], list[Fitted]]) -> list[Fitted]:
-    """Return what `fit` fits to a mesh, from the user's cache if that was done before; `what` names it there."""
+    """Return the capsules that `fit` fits to a mesh, from the user's cache if it has them; `what` names them there."""
     if len(mesh.triangles) <= _FEW:
         return fit(mesh)
     key, file = _key_and_file(what, mesh)
@@ -41,7 +41,7 @@ def fitted_once(what: str, mesh: TriangleMesh, fit: Callable[[TriangleMesh], lis
 
 
 def is_new(what: str, mesh: TriangleMesh) -> bool:
-    """Return whether a mesh will be fitted to, as nothing is kept of it."""
+    """Return whether a mesh must be fitted, because the cache does not have it."""
     return len(mesh.triangles) <= _FEW or not _key_and_file(what, mesh)[1].exists()
 
 

@@ -19,11 +19,11 @@ from evenroad._shared import state_without
 from evenroad.errors import InvalidValue
 
 _AS_LARGE = 1e-4
-"""Largest share of its hull's volume by which a convex mesh differs from the hull."""
+"""Largest difference in volume between a convex mesh and its hull, as a share of the hull's."""
 _GAPS = 0.02
-"""Largest share of edges that a surface with gaps lacks; one that is meant to be open may lack as few."""
+"""Largest share of edges missing from a solid with gaps. A surface that is meant to be open may lack as few."""
 _MISSING = 0.01
-"""Largest share of area that it lacks."""
+"""Largest share of area missing from a solid with gaps."""
 _MOST_HEIGHTS = 1_000_000
 """Largest number of heights of a map: its triangles then take 1 GB and some seconds."""
 _FLAT = 5e-7
@@ -46,7 +46,7 @@ class TriangleMesh:
     Raises
     ------
     InvalidValue
-        If the two are not such arrays, or a triangle names a missing vertex.
+        If the arrays have another shape or dtype, or a triangle names a missing vertex.
     """
 
     vertices: Floats
@@ -77,7 +77,7 @@ class TriangleMesh:
 
     @cached_property
     def compact(self) -> TriangleMesh:
-        """The same triangles; of their corners those at one place are one, and there are no others."""
+        """The same triangles, with equal corners merged and unused vertices removed."""
         used = np.zeros(len(self.vertices), dtype=np.bool_)
         used[self.triangles] = True
         corners, number = unique_rows(self.vertices[used])
@@ -87,17 +87,17 @@ class TriangleMesh:
 
     @property
     def welded(self) -> Ints:
-        """The triangles, (t, 3), by numbers of places: corners at one place have one number, whatever their rows."""
+        """The triangles, (t, 3), by indices of distinct positions: equal corners have one index."""
         return self.compact.triangles
 
     @cached_property
     def closed_parts(self) -> native.ClosedParts:
-        """Which triangles bound closed parts, and whether `facing` tells inside from outside there.
+        """The triangles that bound closed parts, and whether `facing` distinguishes inside from outside there.
 
-        A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles.  Equal
-        corners are one; a triangle that is there again does not count where the part is closed without it, nor does one
-        without an area.  What closed surfaces go around is solid, however they face, but for hollows: surfaces within
-        others that face the other way, or to both sides, and cross no larger one.
+        A part is a set of triangles that share corners; equal corners count as one.  It is closed if every edge belongs
+        to an even number of triangles.  A repeated triangle does not count if the part is closed without it; nor does
+        one without area.  The inside of closed surfaces is solid, however they face, except for hollows.  A hollow is a
+        surface within another that faces the other way, or to both sides, and crosses no larger one.
         """
         return native.closed_parts(self.vertices, self.triangles)
 
@@ -106,7 +106,7 @@ class TriangleMesh:
 
     @cached_property
     def facing(self) -> Ints:
-        """The triangles, those of closed parts turned so that what they wind around is solid."""
+        """The triangles; those of closed parts are oriented so that the parts are solid inside."""
         turned = self.closed_parts.turned
         if not turned.any():
             return self.triangles
@@ -114,11 +114,11 @@ class TriangleMesh:
 
     @cached_property
     def is_nearly_closed(self) -> bool:
-        """Whether its open parts seem to be solids with gaps: they lack hardly any area, and few edges."""
+        """Whether its open parts seem to be solids with gaps: little area and few edges are missing."""
         is_open = ~self.closed_parts.closed
         a, b, c = self.vertices[self.triangles[is_open]].swapaxes(0, 1)
         areas = np.cross(b - a, c - a)
-        # Areas of a closed surface add up to zero, each along its normal: few meshes need a look at their edges.
+        # Area vectors of a closed surface sum to zero. This test is fast, and few meshes need one of their edges.
         if not np.linalg.norm(areas.sum(axis=0)) <= _MISSING * np.linalg.norm(areas, axis=1).sum():
             return False
         return bool(is_open.any()) and 0.0 < float(np.mean(_times_of_edges(self, is_open) % 2)) <= _GAPS
@@ -136,7 +136,7 @@ class TriangleMesh:
 
     @cached_property
     def is_convex(self) -> bool:
-        """Whether it is closed and fills its hull, but for a ten-thousandth of the volume."""
+        """Whether it is closed and fills its hull up to a ten-thousandth of the volume."""
         from scipy.spatial import ConvexHull, QhullError
 
         try:
@@ -157,19 +157,19 @@ class TriangleMesh:
 
 
 def extreme(points: Floats) -> Floats:
-    """Return the corners of the convex hull of points, (n, 3): what is convex and contains those contains all."""
+    """Return the corners of the convex hull of points, (n, 3): a convex body that contains these contains all."""
     from scipy.spatial import ConvexHull, QhullError
 
     try:
         corners: Ints = np.sort(ConvexHull(points).vertices)
     except QhullError:
-        # All in one plane, or fewer than four.
+        # The points lie in one plane, or are fewer than four.
         return np.unique(points, axis=0)
     return points[corners]
 
 
 def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
-    """Return one mesh of one or more."""
+    """Return one mesh with the triangles of one or more."""
     firsts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     return TriangleMesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
@@ -178,15 +178,15 @@ def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
 
 
 def scaled(mesh: TriangleMesh, factors: Sequence[float]) -> TriangleMesh:
-    """Return a mesh with its coordinates multiplied by one factor an axis, (3,)."""
+    """Return a mesh with its coordinates multiplied by one factor per axis, (3,)."""
     return TriangleMesh(mesh.vertices * np.array(factors), mesh.triangles, mesh.name)
 
 
 def volume_of(mesh: TriangleMesh) -> float:
-    """Return the volume of a mesh; where it is not closed, that of its convex hull."""
+    """Return the volume of a mesh; if it is not closed, that of its convex hull."""
     corners = mesh.vertices[mesh.triangles]
     if (_times_of_edges(mesh) == 2).all():
-        # Of a closed surface: tetrahedra from the origin to every triangle, with signs.
+        # The volume of a closed surface is the sum of signed tetrahedra from the origin to each triangle.
         return abs(float(np.linalg.det(corners).sum())) / 6.0
     from scipy.spatial import ConvexHull, QhullError
 
@@ -197,14 +197,14 @@ def volume_of(mesh: TriangleMesh) -> float:
 
 
 def _times_of_edges(mesh: TriangleMesh, of: Bools | slice = slice(None)) -> Ints:
-    """Return to how many triangles, of some, each edge belongs."""
+    """Return the number of triangles, of those selected, to which each edge belongs."""
     sides = np.sort(mesh.welded[of][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     times: Ints = np.unique(sides[:, 0] * len(mesh.vertices) + sides[:, 1], return_counts=True)[1]
     return times
 
 
 def convex_hull(points: npt.ArrayLike, name: str = "hull", grown: float = 0.0) -> TriangleMesh:
-    """Return the surface of the convex hull of points: a solid obstacle, as ``Mesh(convex_hull(points))``.
+    """Return the surface of the convex hull of points; ``Mesh(convex_hull(points))`` is a solid obstacle.
 
     Triangles face outward.  Coplanar points are grown by half a micrometre.
 
@@ -213,9 +213,9 @@ def convex_hull(points: npt.ArrayLike, name: str = "hull", grown: float = 0.0) -
     points : array_like, shape (n, 3)
         Points [m], n >= 1.
     name : str
-        What errors call it.
+        Its name in errors.
     grown : float
-        Half size of a cube to which each point is grown, >= 0 [m].
+        Half size of the cube that replaces each point, >= 0 [m].
 
     Raises InvalidValue if they are not such numbers, or there is no hull.
     """
@@ -246,14 +246,14 @@ def height_map(
     Parameters
     ----------
     heights : array_like, shape (x, y), both >= 2
-        z over ``low + spacing * (i, j)`` [m], at most 1 000 000; there is no surface around NaN.
+        z over ``low + spacing * (i, j)`` [m], at most 1 000 000 values; there is no surface around NaN.
     spacing : float
         Distance of neighbours, > 0 [m].
     low : sequence of 2 floats
         x and y of the first [m].
     depth : float
-        How deep the ground below the lowest height is, >= 0 [m].  Of 0 there is the surface alone, and what is below it
-        is free; else walls and a bottom close it, and what they enclose is solid.
+        Depth of solid ground below the lowest height, >= 0 [m].  Walls and a bottom enclose the ground.  A depth of 0
+        gives the surface alone, and the space below it is free.
 
     Raises InvalidValue if they are not such numbers, or no triangle is left.
     """
@@ -277,7 +277,7 @@ def height_map(
 
 
 def _ground_below(surface: TriangleMesh, depth: float) -> TriangleMesh:
-    """Return what is between a surface and a level below its lowest place, closed."""
+    """Return the closed body between a surface and a level below its lowest point."""
     top, count = surface.triangles, len(surface.vertices)
     bottom = surface.vertices.copy()
     bottom[:, 2] = surface.vertices[top, 2].min() - depth

@@ -20,7 +20,7 @@ from evenroad.geometry.mesh import TriangleMesh, merged
 from evenroad.geometry.pose import Pose
 
 GLTF = (".glb", ".gltf")
-"""Suffixes of glTF, whose y axis is up, as its specification says."""
+"""Suffixes of glTF. Its specification says that y is up."""
 Y_UP = Pose.from_rpy((0.0, 0.0, 0.0), (0.5 * math.pi, 0.0, 0.0))
 """Pose of a glTF in a frame whose z axis is up."""
 
@@ -121,7 +121,7 @@ def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
 
 
 def _files_beside(file: Path) -> object:
-    """Return what gives trimesh the files that a mesh names: those in its folder, and no pipe or device."""
+    """Return the resolver of files that a mesh names: those in its folder, and no pipe or device."""
     from trimesh.resolvers import FilePathResolver
 
     class FilesBeside(FilePathResolver):  # type: ignore[misc]
@@ -135,11 +135,11 @@ def _files_beside(file: Path) -> object:
 
 
 _STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
-"""A triangle of a binary .stl, of which most robots are made: trimesh takes a second or two to load."""
+"""A triangle of a binary .stl. Most robots use this format, and loading trimesh takes a second or two."""
 
 
 def _binary_stl(content: bytes) -> Floats | None:
-    """Return the triangles, (t, 3, 3), of a binary .stl of exactly the size that it announces; of others None."""
+    """Return the triangles, (t, 3, 3), of a binary .stl of exactly the announced size; None for other contents."""
     count = int.from_bytes(content[80:84], "little")
     if len(content) != 84 + count * _STL.itemsize or count == 0:
         return None
@@ -147,7 +147,7 @@ def _binary_stl(content: bytes) -> Floats | None:
 
 
 def _is_cut_off(ply: bytes, triangles: int) -> bool:
-    """Return whether an ascii .ply has other rows than its header announces; trimesh checks binary ones only."""
+    """Return whether an ascii .ply has other rows than its header announces; trimesh checks only binary files."""
     header, _, rows = ply.partition(b"end_header")
     words = [line.split() for line in header.splitlines()]
     if [b"format", b"ascii"] not in [row[:2] for row in words]:
@@ -159,7 +159,7 @@ def _is_cut_off(ply: bytes, triangles: int) -> bool:
 
 _PACKED = (".gz", ".tgz", ".bz2", ".xz", ".zst")
 _MOST_TIMES = 10
-"""Largest number of entries and triangles per byte of a file; files that people make have less than one."""
+"""Largest number of entries and triangles per byte of a file; usual files have less than one."""
 _FEW_TRIANGLES = 1_000_000
 _FEW_INSTANCES = 20
 """Number of instances up to which the parts of a COLLADA file cannot multiply."""
@@ -183,7 +183,7 @@ def require_bounded(file: Path) -> None:
         if announced > _MOST_TIMES * size:
             raise ValueError(f"it announces {announced} entries in {size} bytes")
     elif suffix == ".gltf":
-        # What it has lies in other files; what lies in none would be zeros.
+        # Data may be in other files. Entries without data would all be zeros.
         announced = _announced_by_gltf(file.read_bytes(), without_data=True)
         if announced > max(_FEW_TRIANGLES, _MOST_TIMES * size):
             raise ValueError(f"it announces {announced} entries without data in {size} bytes")

@@ -35,8 +35,8 @@ class Mesh(Shape):
     ----------
     source : str, path-like, TriangleMesh, or a pair of arrays
         A file, opened on first use; or vertices, (v, 3) [m], and triangles as rows of these, (t, 3); or an object with
-        `vertices` and `faces`, such as a mesh of trimesh.  The y axis of a glTF, which is up, becomes z, but for the
-        mesh of a `link`.
+        `vertices` and `faces`, such as a mesh of trimesh.  In a glTF y is up: it becomes z, except for the mesh of a
+        `link`.
     scale : float or sequence of 3 floats
         Factors of the coordinates, z up, none of them 0.
     **placed
@@ -79,7 +79,7 @@ class Mesh(Shape):
 
     @property
     def volume(self) -> float:
-        """Volume [m^3]; of a mesh that is not closed, that of its convex hull."""
+        """Volume [m^3]; if the mesh is not closed, that of its convex hull."""
         return volume_of(self.triangles)
 
     def __str__(self) -> str:
@@ -92,9 +92,9 @@ class Mesh(Shape):
 
 
 def gap_notes(what: str, bodies: Iterable[tuple[str, Shape]]) -> tuple[str, ...]:
-    """Return a note about the meshes, by names of links or obstacles, that seem to be solids with gaps."""
+    """Return a note that names the links or obstacles whose meshes seem to be solids with gaps."""
     named = [(name, body) for name, body in bodies if isinstance(body, Mesh)]
-    # A scale changes no gap, and makes another mesh.
+    # A scale makes another mesh, but changes no gap.
     meshes = [(name, body.source if isinstance(body.source, TriangleMesh) else body.triangles) for name, body in named]
     names = listed(dict.fromkeys(name for name, mesh in meshes if mesh.is_nearly_closed))
     said = "is closed but for small gaps, so that it is a surface with nothing inside"
@@ -168,7 +168,7 @@ class PointCloud(Shape):
 
     @cached_property
     def _few(self) -> tuple[object, ...]:
-        """What two clouds differ in at once, as a rule: a frame of a camera is not read as a whole for that."""
+        """A few values in which different clouds usually differ, so that equality rarely reads all points."""
         some = self.points[:: len(self.points) // 16 + 1].tobytes()
         return self.radius, self.pose, self.link, len(self.points), some
 
@@ -180,7 +180,7 @@ class PointCloud(Shape):
             return NotImplemented
         if self is other or self._few != other._few:
             return self is other
-        # As bits: then 0.0 is not -0.0, which have different ones.
+        # Compared as bits, so that 0.0 and -0.0 differ.
         return np.array_equal(self.points.view(np.uint64), other.points.view(np.uint64))
 
     def __str__(self) -> str:

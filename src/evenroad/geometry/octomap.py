@@ -1,4 +1,4 @@
-"""Reading an OctoMap (``.bt``): its occupied cells as boxes, whose outside is a mesh."""
+"""Reader of OctoMaps (``.bt``): occupied cells are boxes, whose outside is a mesh."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LEVELS = 16
 """Depth of the tree; the finest cells are 2^-16 of the root."""
 _HEADER = Kind(("id", "size", "res"))
 _OCCUPIED, _INNER = 2, 3
-"""What two bits of a node say of a child; of 1 it is free, of 0 unknown."""
+"""Values of a child's two bits in a node. The others are 0, unknown, and 1, free."""
 _SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
 """Corners of the sides of a cube, counterclockwise from outside; the bits of a corner say x, y and z."""
 
@@ -23,10 +23,10 @@ _SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), 
 def read_octomap(file: Path) -> tuple[Floats, Ints]:
     """Return vertices, (v, 3) [m], and triangles, (t, 3), around the occupied cells of an OctoMap.
 
-    The format is that of Hornung et al. (2013), "OctoMap: an efficient probabilistic 3D mapping framework": a header
-    in text, then for each inner node, depth first, two bits for each of eight children.  Sides that two cells of one
-    size share are left out; unknown cells are free.  Raises BrokenFile if the file is no such map, cut off, or without
-    an occupied cell.
+    The format is that of Hornung et al. (2013), "OctoMap: an efficient probabilistic 3D mapping framework".  After a
+    header in text, each inner node, depth first, has two bits for each of eight children.  Sides shared by two cells of
+    one size are omitted; unknown cells are free.  Raises BrokenFile if the file is not such a map, is cut off, or has
+    no occupied cell.
     """
     try:
         header, data = read_bytes(file).split(b"\ndata\n", 1)

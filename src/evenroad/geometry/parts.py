@@ -1,4 +1,4 @@
-"""Parts: a link's true shape as convex parts, which decide where its capsules touch an obstacle."""
+"""Parts: a link's true shape as convex parts. They decide if its capsules touch an obstacle."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from evenroad.geometry.pose import Vector
 from evenroad.geometry.shapes import Capsule, Cylinder, Mesh, Shape, Sphere
 
 LITTLE = 1e-4
-"""Largest height of a corner that a convex mesh loses, for speed [m]; its hull is widened by what that leaves out."""
+"""Largest height of a corner that is removed from a convex mesh, for speed [m]; the hull is widened to compensate."""
 
 
 @dataclass(frozen=True, eq=False)
 class Parts:
     """All points within `radius`, and within a disc, of the convex hull of each part's corners; equal by value.
 
-    `corners`, (parts, corners, 3), are in the frame of the link [m].  The disc is across its axis, whose length is the
-    disc's radius: so a segment is a cylinder.  `of` says what they are parts of: the kind of a shape, ``hull`` of a
-    convex mesh, ``mesh`` of any other, whose triangles they are.  Surfaces that are `closed` have an inside.  All lies
-    within `beyond` of the hull of the points `around`, (n, 3); of few parts these are their corners.
+    `corners`, (parts, corners, 3), are in the frame of the link [m].  The disc is perpendicular to its axis, whose
+    length is the disc's radius; with it a segment becomes a cylinder.  `of` is the kind of the shape, ``hull`` for a
+    convex mesh, and ``mesh`` for any other, whose triangles the parts are.  Surfaces that are `closed` have an inside.
+    All parts lie within `beyond` of the hull of the points `around`, (n, 3); for few parts these are their corners.
     """
 
     corners: Floats
@@ -56,16 +56,16 @@ class Parts:
 
 
 def parts_of(shapes: Iterable[Shape]) -> tuple[Parts, ...]:
-    """Return the parts of shapes, of the links whose capsules are not these shapes."""
+    """Return the parts of shapes, for links whose capsules are not the shapes themselves."""
     every = tuple(shapes)
     sharp = {shape.link for shape in every if not isinstance(shape, Sphere | Capsule)}
     return tuple(parts for shape in every if shape.link in sharp for parts in _parts(shape))
 
 
 def kinds_in_words(robot_parts: Iterable[Parts], capsules: Iterable[Capsule]) -> str:
-    """Return the kinds of a robot's bodies, as ``hulls, meshes and capsules``: its parts, and capsules of other links.
+    """Return the kinds of a robot's bodies as text, such as ``hulls, meshes and capsules``.
 
-    A mesh that is convex is a hull.
+    They are the kinds of its parts, and the capsules of other links.  A convex mesh is a hull.
     """
     parts = tuple(robot_parts)
     links = {each.link for each in parts}
@@ -89,7 +89,7 @@ def _parts(shape: Shape) -> tuple[Parts, ...]:
     if mesh.is_convex:
         return (Parts(around[np.newaxis], shape.link, "hull", beyond),)
     corners = shape.pose.apply(mesh.vertices)[mesh.facing]
-    # Where sides do not tell inside from outside nobody knows what is solid.
+    # If the triangles do not show which side is inside, no part is known to be solid.
     closed = mesh.closed_parts.closed & mesh.closed_parts.oriented
     return tuple(
         Parts(_single(corners[these]), shape.link, "mesh", closed=bool(inside), around=around, beyond=beyond)
@@ -99,12 +99,12 @@ def _parts(shape: Shape) -> tuple[Parts, ...]:
 
 
 def _single(corners: Floats) -> Floats:
-    """Return corners as single precision has them: the native kernel's."""
+    """Return corners rounded to single precision, as in the native kernel."""
     return corners.astype(np.float32).astype(np.float64)
 
 
 def spread(parts: Parts) -> Floats:
-    """Return points, (n, 3), in whose hull all parts lie that are not widened by the radius."""
+    """Return points, (n, 3), whose hull contains all parts before they are widened by the radius."""
     points, axis = parts.corners.reshape(-1, 3), np.array(parts.disc)
     radius = float(np.linalg.norm(axis))
     if radius == 0.0:

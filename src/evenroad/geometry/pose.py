@@ -53,7 +53,7 @@ class Pose:
     xyz : sequence of 3 floats
         Origin of the pose's own frame [m].
     rotation : sequence of 9 floats, or ndarray, shape (3, 3)
-        Of that frame, row by row.
+        Rotation of that frame, row by row.
     rpy : sequence of 3 floats
         In place of `rotation`: roll, pitch and yaw as in URDF [rad].
     xyzw : sequence of 4 floats
@@ -209,7 +209,7 @@ class Pose:
     def xyzw(self) -> tuple[float, float, float, float]:
         """The rotation as a quaternion of norm 1, in the order of SciPy and ROS; w >= 0."""
         (a, b, c), (d, e, f), (g, h, i) = (self.rotation[k : k + 3] for k in (0, 3, 6))
-        # Four times the squares of x, y, z and w: dividing by the largest loses nothing.
+        # Four times the squares of x, y, z and w. Division by the largest loses no digits.
         squares = (1.0 + a - e - i, 1.0 - a + e - i, 1.0 - a - e + i, 1.0 + a + e + i)
         rows = (
             (squares[0], b + d, c + g, h - f),

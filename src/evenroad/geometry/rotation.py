@@ -72,7 +72,7 @@ def _from_z(axis: tuple[float, ...]) -> Floats:
     z /= length
     if z[0] == 0.0 and z[1] == 0.0 and z[2] > 0.0:
         return np.eye(3)
-    # The coordinate axis farthest from z: never near parallel to it.
+    # The coordinate axis farthest from z is never nearly parallel to it.
     x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
     x /= np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])

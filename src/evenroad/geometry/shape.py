@@ -26,7 +26,7 @@ class Placed(TypedDict, total=False):
     xyzw: Sequence[float]
     """A quaternion in place of `rpy`."""
     pose: Pose
-    """In place of the three."""
+    """A pose in place of the three."""
     link: str
     """The link that it is fixed to; default: the world."""
     name: str
@@ -74,7 +74,7 @@ class Shape:
     def _set_pose(self, placed: Placed) -> None:
         """Set pose, link and name; UnknownName for another keyword, InvalidValue for two poses."""
         if strange := sorted(set(placed) - Placed.__annotations__.keys()):
-            # All are listed: what others call `pos` is nearly `pose`, and means `xyz`.
+            # All are listed, because a hint by spelling misleads: `pos` is nearly `pose`, but means `xyz`.
             known = ", ".join(sorted(Placed.__annotations__))
             raise UnknownName(f"unknown keyword of a {self.kind}: {shown(strange[0])}; known: {known}")
         turned = {key: placed[key] for key in ("xyz", "rpy", "xyzw") if key in placed}

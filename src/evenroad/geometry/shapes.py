@@ -1,6 +1,6 @@
 """Shapes of links, obstacles and rigid bodies: frozen values with dimensions, a pose, and the link they are fixed to.
 
-A new one is a class here, with its distance (``distance.py``) and its capsules (``fit.py``).
+A new shape is a class here, with its distance (``distance.py``) and its capsules (``fit.py``).
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ class Capsule(Shape):
     """All points within a radius of a segment: a cylinder with half balls as caps.
 
     ``Capsule(radius, length)`` lies along the z axis of its frame, its middle in the origin.  ``Capsule(a, b, radius)``
-    has its segment from `a` to `b`, and is a ball where the two are one point.
+    has its segment from `a` to `b`, and is a ball if the two are one point.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ def shape_of(kind: str, size: Sequence[float], pose: Pose = IDENTITY, link: str 
 
 
 def along_z(capsule: Capsule) -> Capsule | Sphere:
-    """Return the same body as a capsule along the z axis of its frame; a sphere where it has no length."""
+    """Return the same body as a capsule along the z axis of its frame, or a sphere if it has no length."""
     if capsule.a[:2] == capsule.b[:2] == (0.0, 0.0) and capsule.b[2] == -capsule.a[2] > 0.0:
         return capsule
     a, b = np.array(capsule.a), np.array(capsule.b)

@@ -1,4 +1,4 @@
-"""Annealing: noisy Adam on the coordinates, the noise cooling with the learning rate."""
+"""Annealing: noisy Adam on the coordinates, where the noise falls with the learning rate."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from evenroad.errors import InvalidValue
 from evenroad.points.pointset import BELOW_ONE, as_unit_points
 
 LOWEST = 1.0 - BELOW_ONE
-"""Smallest coordinate that an annealing returns; the largest is BELOW_ONE."""
+"""Smallest coordinate of a returned point; the largest is BELOW_ONE."""
 
 Callback = Callable[[int, int, float], object]
 """``callback(step, steps, best)`` after every step."""
 
 SCHEDULE = 2
-"""Version of the start and of the schedule of rates and noise: another one makes other sets of the same seed."""
+"""Version of the start and of the schedule of rates and noise. Sets of one seed differ between versions."""
 
 LARGEST_RATE, LAST_OVER_FIRST, HOTTEST = 0.02, 1 / 2000, 0.3
 
@@ -31,11 +31,11 @@ FIRST_DECAY, SECOND_DECAY = 0.9, 0.999
 """Decay rates of Adam's two moments."""
 
 TINY = 1e-30
-"""Term that avoids 0/0 and nothing more, so that the scale of the objective does not matter."""
+"""Term that avoids 0/0. It is so small that the scale of the objective does not matter."""
 
 
 class Minimised(Protocol):
-    """What an annealing makes small: an L2 discrepancy, or an objective of several terms."""
+    """An objective that annealing minimises: an L2 discrepancy, or a sum of several terms."""
 
     @property
     def periodic(self) -> bool:
@@ -43,14 +43,14 @@ class Minimised(Protocol):
 
     @property
     def least_points(self) -> int:
-        """Fewest points that it is defined for: 2 with an energy, else 1."""
+        """Smallest number of points that it is defined for: 2 with an energy, else 1."""
 
     def of_columns(self, columns: Floats) -> tuple[float, Floats]:
         """Return the value and its gradient, shape (d, n), at points of shape (d, n)."""
 
 
 class Annealed(NamedTuple):
-    """The best points that an annealing saw, (n, d) in (0, 1), read-only, below 1 as float32; and the value there."""
+    """The best points that were found, (n, d) in (0, 1), read-only, below 1 as float32, and the value there."""
 
     points: Floats
     value: float
@@ -67,11 +67,11 @@ def anneal(
     rates: tuple[float, float] | None = None,
     callback: Callback | None = None,
 ) -> Annealed:
-    """Make the objective of n points in [0, 1)^d small, on one thread; the same seed gives the same bits.
+    """Minimise the objective of n points in [0, 1)^d, on one thread; the same seed gives the same bits.
 
-    Adam (0.9, 0.999) with a learning rate that falls 2000-fold along a half cosine, plus Gaussian noise in
-    proportion to the rate: the noise is what finds a good basin.  The best points seen are kept.  The bits are those of
-    one version of numpy and of this package.  Arguments out of range are an InvalidValue.
+    The optimiser is Adam (0.9, 0.999).  Its learning rate falls 2000-fold along a half cosine.  Gaussian noise in
+    proportion to the rate finds a good basin.  The best points seen are kept.  Bits may change with the version of
+    numpy and of this package.  Arguments out of range raise InvalidValue.
 
     Parameters
     ----------
@@ -80,13 +80,13 @@ def anneal(
     objective : Minimised
         One of ``MEASURES``, or an objective of the studies: anything with the attributes of :class:`Minimised`.
     steps : int
-        5000 is the standard, 20000 gains another percent or so.
+        5000 is the standard; 20000 gains about one more per cent.
     rng : int, SeedSequence or Generator
-        Draws the start and the noise.
+        Seed of the start and the noise.
     start : array_like, shape (n, d), optional
-        Instead of random points; coordinates at a face of the cube are moved off it by 6e-8.
+        Start points, default random. Coordinates at a face of the cube are moved off it by 6e-8.
     rates : two floats, optional
-        First learning rate, and the noise's standard deviation over the rate, where they are not the usual ones.
+        First learning rate, and the noise's standard deviation over the rate; default: those of the schedule.
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step; what it raises stops the annealing.
     """
@@ -130,9 +130,9 @@ def learning_rate(step: int, steps: int, first: float) -> float:
 
 
 def first_rate(n: int, d: int) -> float:
-    """Return the learning rate of the first step: 0.02, or a fifth of the spacing n^(-1/d) where that is less.
+    """Return the learning rate of the first step: 0.02 or a fifth of the spacing n^(-1/d), whichever is less.
 
-    A step of Adam is about as long as its rate: one of half a spacing, as 0.02 is at d = 2, n = 512, never settles.
+    A step of Adam is about as long as its rate.  Steps of half a spacing never settle: 0.02 at d = 2, n = 512.
     """
     return min(LARGEST_RATE, float(0.2 * n ** (-1.0 / d)))
 
@@ -140,8 +140,8 @@ def first_rate(n: int, d: int) -> float:
 def noise_over_rate(objective: Minimised, n: int, d: int) -> float:
     """Return the noise's standard deviation over the learning rate: fitted to trials, not derived.
 
-    With an energy it starts at a fiftieth of the spacing.  Discrepancies alone like it the hotter, the fewer
-    points a dimension there are (d = 2 .. 14, n = 16 .. 1024).
+    With an energy it starts at a fiftieth of the spacing.  Discrepancies alone need more noise if there are fewer
+    points per dimension (d = 2 .. 14, n = 16 .. 1024).
     """
     if objective.least_points == 2:
         return min(HOTTEST, float(0.02 * n ** (-1.0 / d)) / first_rate(n, d))
@@ -153,7 +153,7 @@ def noise_over_rate(objective: Minimised, n: int, d: int) -> float:
 def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random.Generator) -> Floats:
     if start is None:
         random = np.ascontiguousarray(draws.random((n, d)).T)
-        # On a line points would have to pass each other: there one point a cell is the place to start.
+        # Points on a line cannot pass each other, so each cell gets one point at the start.
         return (np.arange(n) + random) / n if d == 1 else random
     given = as_unit_points(start)
     if given.shape != (n, d):

@@ -1,4 +1,4 @@
-"""PointSet: a read-only array of points in the unit cube, and where it came from."""
+"""PointSet: a read-only array of points in the unit cube, and its origin."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, shown
 
 BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
-"""Largest float32 below 1: what a coordinate that rounds up to 1 becomes."""
+"""Largest float32 below 1. It replaces coordinates that would round up to 1."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Origin:
-    """Origin of a point set: enough to reproduce it.
+    """Origin of a point set, from which it can be made again.
 
-    `family` is the sampler or family (``halton``, ``hickernell``), `method` the construction (``plain``, ``annealed``,
-    ``given``), `objective` the minimised expression, or "".  `seed` is None for a Generator, or if nothing was drawn.
-    `replica` is the index of a trained set in its pool, `steps` the optimiser's; `start` the index of a sequence's
-    first point, `version` evenroad's.
+    `family` is the sampler or family (``halton``, ``hickernell``).  `method` is the construction (``plain``,
+    ``annealed``, ``given``), and `objective` the minimised expression, or "".  `seed` is None for a Generator, or if
+    nothing was drawn.  `replica` is the index of a trained set in its pool, `steps` the number of optimiser steps,
+    `start` the index of a sequence's first point, and `version` that of evenroad.
     """
 
     family: str
@@ -82,7 +82,7 @@ class PointSet:
 
     def __post_init__(self) -> None:
         points = as_unit_points(self.points)
-        # A read-only array that is nobody's view is kept as it is: samplers make such, and large sets fit once.
+        # Samplers return read-only arrays that are no views.  These are not copied: a large set fits in memory once.
         set_fields(self, points=points.copy() if points.flags.writeable or points.base is not None else points)
 
     @property
@@ -216,7 +216,7 @@ class PointSet:
 
 
 def below_one(points: Floats, dtype: npt.DTypeLike = np.float32) -> Floats:
-    """Return coordinates, in [0, 1), that are below 1 as floats of this kind, too; the same array where they are."""
+    """Return coordinates in [0, 1) that stay below 1 as floats of this kind; the same array if they already do."""
     kind = np.dtype(dtype)
     if kind.kind != "f" or kind.itemsize >= 8 or not points.size:
         return points
@@ -232,7 +232,7 @@ def as_unit_points(points: object) -> Floats:
         raise InvalidValue(f"points must be an (n, d) array, got {shown(points)}; a file is read by load_points")
     try:
         given = np.asarray(points)
-        # NumPy itself drops imaginary parts, parses text and counts seconds; a duration is an integer to its scalars.
+        # NumPy would drop imaginary parts, parse text, and turn durations into integers.
         if given.dtype.kind == "O":
             for each in given.flat:
                 if not isinstance(each, Real | Decimal) or isinstance(each, np.timedelta64):
@@ -244,7 +244,7 @@ def as_unit_points(points: object) -> Floats:
         raise InvalidValue(f"points must be an (n, d) array of numbers: {error}") from None
     if array.ndim != 2 or array.shape[1] < 1:
         raise InvalidValue(f"points must have shape (n, d) with d >= 1, got {array.shape}")
-    # Extremes first, which need no further array; NaN fails the comparison.
+    # The extremes need no further array; NaN fails the comparison.
     if array.size and not (array.min() >= 0.0 and array.max() < 1.0):
         bad = ~((array >= 0.0) & (array < 1.0))
         i, k = np.argwhere(bad)[0]

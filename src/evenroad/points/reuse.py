@@ -1,7 +1,7 @@
-"""Sets from larger ones: the projection on fewer axes, and an order whose every beginning is even.
+"""Sets from larger ones: the projection on fewer axes, and an order whose beginnings are all even.
 
-Both are proposed for large trained sets by Chahine, Rusch, Patterson and Rus (2025): one set serves many dimensions and
-many numbers of points.  ``studies/docs/reuse.md`` has what that costs.
+Chahine, Rusch, Patterson and Rus (2025) propose both for large trained sets: one set serves many dimensions and many
+numbers of points.  ``studies/docs/reuse.md`` has the cost.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from evenroad.points.measures.measure import MEASURES, Measure
 from evenroad.points.pointset import PointSet
 
 MOST_CHOICES = 300
-"""Choices of axes up to which all are measured; beyond it axes are added and exchanged one by one."""
+"""Number of choices of axes up to which all are measured. Beyond it, axes are added and exchanged one by one."""
 
 
 @explains_calls
@@ -34,8 +34,8 @@ def project(points: PointSet, d: int, *, measure: str = "hickernell") -> PointSe
     d : int
         Number of axes to keep, >= 1; they keep their order.
     measure : str
-        The L2 discrepancy that judges, a name in :data:`evenroad.points.measures.MEASURES`.  Up to 300 choices of axes
-        are all measured. Else the best axis is added ``d`` times, then exchanged while that lowers the discrepancy.
+        The L2 discrepancy to minimise, a name in :data:`evenroad.points.measures.MEASURES`.  Up to 300 choices of axes
+        are all measured.  Else the best axis is added ``d`` times, then exchanged while that lowers the discrepancy.
 
     Returns
     -------
@@ -91,9 +91,9 @@ def _exchanged(points: Floats, d: int, judge: Measure) -> list[int]:
 
 @explains_calls
 def greedy_order(points: PointSet, *, measure: str = "hickernell") -> PointSet:
-    """Return the same points in an order in which each next one keeps the discrepancy of all so far the least.
+    """Return the same points in a greedy order: each next point minimises the discrepancy of all so far.
 
-    So each beginning is a set of its own.  It takes O(n^2 d) time: 0.5 s for 2048 points in ten dimensions.
+    Each beginning is then an even set.  It takes O(n^2 d) time: 0.5 s for 2048 points in ten dimensions.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def greedy_order(points: PointSet, *, measure: str = "hickernell") -> PointSet:
     Returns
     -------
     PointSet
-        All points, shape (n, d); of equally good ones the first in the given order comes first.
+        All points, shape (n, d); among equally good ones, the first in the given order comes first.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def _greedy(points: PointSet, judge: Measure) -> Ints:
     with_chosen, left = np.zeros(n), np.ones(n, dtype=np.bool_)
     order = np.empty(n, dtype=np.int64)
     for m in range(1, n + 1):
-        # What the squared discrepancy of m points gains by each, but for what all have in common.
+        # Increase of the squared discrepancy of m points by each candidate, up to a common constant.
         gains = (2.0 * with_chosen + own) / m - 2.0 * linear
         order[m - 1] = chosen = int(np.where(left, gains, np.inf).argmin())
         left[chosen] = False
@@ -174,7 +174,7 @@ def prefix_discrepancies(points: PointSet, *, measure: str = "hickernell") -> Fl
     """
     columns, terms = _measure(measure).terms_of(points.points)
     n = columns.shape[1]
-    # What point i adds to the sum over all pairs of the first i.
+    # The share of point i in the sum over all pairs of the first i.
     added = np.empty(n)
     for i in range(n):
         row = pair_row(columns, terms.pairs, i, slice(0, i + 1))

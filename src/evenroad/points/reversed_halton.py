@@ -1,4 +1,4 @@
-"""Even points of balls, spheres and cubes that drive trees and smoothing: Halton's with reversed digits."""
+"""Even points of balls, spheres and cubes, from Halton's with reversed digits; they drive trees and smoothing."""
 
 from __future__ import annotations
 
@@ -12,14 +12,13 @@ _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 6
 _SAMPLES = 2048
 _STEPS = 2048
 PAIRS = 96
-"""Number of pairs of places that shortening joins."""
+"""Number of pairs of positions on a path that shortening joins."""
 _MANY = 8
-"""Dimension from which nearly all of a ball lies at its surface, and steps are spread otherwise."""
+"""Dimension from which nearly all of a ball lies at its surface. From there the lengths of steps are spread."""
 _SHORTEST = 0.6
-"""Of these steps, as a share of the radius."""
+"""Shortest of these steps, as a share of the radius."""
 _FEW = 3
-"""So many pairs of these steps have one in which only some joints move: out of a narrow place hardly any others lead.
-"""
+"""One pair of these steps in three moves only some joints: hardly any other steps leave a narrow passage."""
 
 
 @once
@@ -30,7 +29,7 @@ def cube_points(dim: int) -> Floats:
 
 def shifted_cube_points(dim: int, shift: int) -> Floats:
     """Return the points of `cube_points`, (2048, dim), moved on the torus: as even, and others for each shift >= 1."""
-    # Multiples of the powers of the generalised golden ratio, of x^(dim + 1) = x + 1: no two shifts are close.
+    # Powers of the generalised golden ratio, x^(dim + 1) = x + 1: no two of their multiples are close.
     ratio = 2.0
     for _ in range(64):
         ratio = (1.0 + ratio) ** (1.0 / (dim + 1))
@@ -42,8 +41,9 @@ def shifted_cube_points(dim: int, shift: int) -> Floats:
 def ball_points(dim: int) -> Floats:
     """Return 2048 points in the unit ball, (2048, dim): the steps that trees try around their nodes.
 
-    Directions are spread evenly.  So is the ball's volume in up to 7 dimensions; in more, where hardly a point of such
-    a ball would be near its centre, the logarithm of the length is, from 0.6 to 1, and some steps move a few joints.
+    Directions are spread evenly.  Up to 7 dimensions the points fill the ball's volume evenly.  In more dimensions such
+    points would nearly all be far from the centre.  There the logarithm of the length is spread evenly, from 0.6 to 1,
+    and some steps move only a few joints.
     """
     ball = _even_ball(dim)
     if dim < _MANY:
@@ -58,7 +58,7 @@ def _even_ball(dim: int) -> Floats:
     """Return 2048 points spread evenly in the unit ball, (2048, dim)."""
     even = reversed_halton(_STEPS, 2 * (-(-dim // 2)) + 1)
     radius, others = even[:, :1], even[:, 1:]
-    # Two normal numbers of two even ones (Box and Muller); their direction is even on the sphere.
+    # Box and Muller: two even numbers give two normal ones, whose direction is even on the sphere.
     size = np.sqrt(-2.0 * np.log(1.0 - others[:, 0::2]))
     angle = 2.0 * np.pi * others[:, 1::2]
     normal = np.concatenate([size * np.cos(angle), size * np.sin(angle)], axis=1)[:, :dim]
@@ -67,7 +67,7 @@ def _even_ball(dim: int) -> Floats:
 
 def _some_joints(dim: int) -> npt.NDArray[np.bool_]:
     """Return which joints move in each step, (2048, dim): two or more, the logarithm of their number spread evenly."""
-    # Multiples of the roots of primes: even, and no two alike.
+    # Multiples of the roots of primes are even, and all different.
     even = np.outer(np.arange(1.0, _STEPS + 1.0), np.sqrt(_primes(dim + 1))) % 1.0
     number = np.rint(2.0 * (0.5 * dim) ** even[:, :1])
     return even[:, 1:].argsort(axis=1).argsort(axis=1) < number
@@ -87,15 +87,15 @@ def sphere_points(dim: int) -> Floats:
 
 @once
 def share_pairs(most: int = PAIRS) -> Floats:
-    """Return the pairs of places, shares of a path's length, that shortening joins, (most, 2)."""
+    """Return the pairs of positions that shortening joins, as shares of a path's length, (most, 2)."""
     return _read_only(reversed_halton(most, 2))
 
 
 def reversed_halton(count: int, dim: int) -> Floats:
     """Return points 1 .. count of Halton's sequence with its digits reversed, (count, dim), in [0, 1).
 
-    Digit i of base b is replaced by b - i, and 0 by 0 (B. Vandewoestyne and R. Cools, 2006): without this,
-    coordinates of large bases move in step.
+    Digit i of base b is replaced by b - i, and 0 stays 0 (B. Vandewoestyne and R. Cools, 2006).  Without this,
+    coordinates of large bases are correlated.
     """
     points = np.zeros((count, dim))
     for k, base in enumerate(_primes(dim)):

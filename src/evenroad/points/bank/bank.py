@@ -29,7 +29,7 @@ INDEX = "index.json"
 STUDIES, LARGE_SETS = "evenroad_studies", "sets"
 """The package with the files of larger sets, and their folder in it."""
 MAKERS = "evenroad.trained"
-"""Group of entry points of another package that make a set where the bank has none: family -> function."""
+"""Group of entry points, family -> function: other packages make sets that the bank does not have."""
 MOST_IN_THE_CORE = 32
 """Number of points of the largest sets in evenroad's own wheel."""
 SEED = 20261121
@@ -38,7 +38,7 @@ SEED = 20261121
 
 @dataclass(frozen=True)
 class Cell:
-    """The pool of one family at one n and d, with `hashes` of the stored float32 values and `measures` of every set."""
+    """The sets of one family at one n and d, with `hashes` of the stored float32 values and `measures` of each set."""
 
     path: Path
     n: int
@@ -143,7 +143,7 @@ def _index(folder: Path) -> dict[str, Any]:
 
 @lru_cache(maxsize=8)
 def _parse_index(path: Path, mtime_ns: int) -> dict[str, Any]:
-    """Parse the index; `mtime_ns` is part of the key so that a bank being built is seen to grow."""
+    """Parse the index; `mtime_ns` is part of the cache's key, so a changed index is read again."""
     try:
         index = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -177,16 +177,16 @@ TRAINED_FAMILIES: dict[str, str] = {
 
 
 POOL, STEPS, FEWEST_STEPS, WORK = 8, 5000, 300, 1.5e10
-"""Sets of a pool that is annealed when it is drawn from, and steps of each; fewer, where they examine more coordinates
-of pairs than this, which takes some seconds, and none where fewest would not do."""
+"""`POOL`: sets of a pool that is annealed on demand.  `STEPS`: steps of each set.  `WORK`: limit on the coordinates of
+pairs examined, some seconds.  Beyond it a set takes fewer steps; it is not made in fewer than `FEWEST_STEPS`."""
 
 
 @dataclass(frozen=True)
 class Trained:
     """Draws a set of a trained family, ``hickernell`` or ``mpmc``, from a bank, by default the shipped one.
 
-    Where the bank has no pool, sets of ``hickernell`` are annealed: 0.3 s for 96 points in the plane, 5 s for 512 in
-    ten dimensions, the first time in a process.  The network of evenroad-studies makes those of ``mpmc``, in as long.
+    If the bank has no pool, sets of ``hickernell`` are annealed once per process: 0.3 s for 96 points in the plane,
+    5 s for 512 in ten dimensions.  The network of evenroad-studies makes sets of ``mpmc`` in the same time.
     """
 
     family: str
@@ -203,7 +203,7 @@ class Trained:
 
     @property
     def any_n(self) -> bool:
-        """Whether it has a set of every n, up to what is made in some seconds."""
+        """Whether it has a set of every n that some seconds suffice to make."""
         return self.family == "hickernell" or _maker(self.family) is not None
 
     @property
@@ -212,13 +212,13 @@ class Trained:
         return TRAINED_FAMILIES[self.family]
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return one set of n points in d dimensions; NotAvailable if there is none, or it takes long to make."""
+        """Return one set of n points in d dimensions; NotAvailable if there is none and making one takes long."""
         n, d = require_count("n", n), require_count("d", d)
         try:
             cell = self.bank.cell(self.family, n, d)
         except NotAvailable as error:
             if "pip install" in str(error):
-                # Not annealed: it would be another set than with the studies installed.
+                # Not annealed, because that gives another set than an installation with the studies.
                 raise
             replica = int(generator(rng).integers(POOL))
             made = _made(self.family, n, d, replica)
@@ -237,7 +237,7 @@ class Trained:
 
 @lru_cache(maxsize=64)
 def _made(family: str, n: int, d: int, replica: int) -> PointSet | None:
-    """Return a set of the pool that is made when it is drawn from, from the bank's seeds; None if it takes long."""
+    """Return a set of a pool that is made on demand, from the bank's seeds; None if that takes long."""
     seeds = np.random.SeedSequence(SEED, spawn_key=(replica,))
     if family == "mpmc":
         maker = _maker(family)
@@ -257,7 +257,7 @@ def _made(family: str, n: int, d: int, replica: int) -> PointSet | None:
 
 @lru_cache(maxsize=4)
 def _maker(family: str) -> Callable[[int, int, np.random.SeedSequence], PointSet | None] | None:
-    """Return what an installed package makes sets of a family with."""
+    """Return the function of an installed package that makes sets of a family."""
     # Imported late, since it takes long.
     from importlib.metadata import entry_points
 

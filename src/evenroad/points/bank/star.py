@@ -1,4 +1,4 @@
-"""Sets of the least exact star discrepancy that we know: one for each number of points, in two and three dimensions.
+"""Sets of the smallest exact star discrepancy known to us: one per number of points, in two and three dimensions.
 
 ``star/d02.npy`` in the studies holds the sets of 1, 2, ... points one after the other, float32, and ``star/d02.csv``
 their exact values, who found them, and their hashes.
@@ -24,14 +24,14 @@ from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
 
 DIMENSIONS, LARGEST = (2, 3), 512
-"""Where there are sets, and the largest number of points."""
+"""Dimensions of the sets, and their largest number of points."""
 
 METHODS = {2: "orders placed exactly", 3: "annealed and relaxed"}
 
 
 @dataclass(frozen=True)
 class Record:
-    """What is known of a set: its exact star discrepancy, who found it, and the hash of its points."""
+    """Record of a set: its exact star discrepancy, who found it, and the hash of its points."""
 
     value: float
     found: str
@@ -40,9 +40,9 @@ class Record:
 
 @dataclass(frozen=True)
 class Star:
-    """The set of n points of least exact star discrepancy that we know, n <= 512, d = 2 or 3; always the same set.
+    """The set of n points of smallest exact star discrepancy known to us, n <= 512, d = 2 or 3; always the same set.
 
-    It is good for integrals. Roadmaps take :class:`~evenroad.points.samplers.Even`: what keeps apart plans better.
+    It is good for integrals.  For roadmaps use :class:`~evenroad.points.samplers.Even`: separated points plan better.
     """
 
     name = "star"
@@ -63,7 +63,7 @@ class Star:
 
 
 def records(d: int) -> Mapping[int, Record]:
-    """Return what is known of the set of each n, d = 2 or 3."""
+    """Return the record of the set of each n, d = 2 or 3."""
     return _records(_path(d, "csv"))
 
 

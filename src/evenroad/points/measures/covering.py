@@ -1,8 +1,8 @@
 """Certified bounds of the dispersion, in any dimension, over any box, by branch and bound.
 
-A cell of the box, with centre c and half sides h, is within sqrt(sum_k (|c_k - x_k| + h_k)^2) of a point x, the
-distance of its farthest corner; the least of these over all x is an upper bound for the cell.  Cells whose bound
-exceeds the largest distance of any centre by more than some share are halved.
+A cell of the box has a centre c and half sides h.  Its farthest corner from a point x is at the distance
+sqrt(sum_k (|c_k - x_k| + h_k)^2).  The least of these over all x is an upper bound for the cell.  A cell is halved if
+its bound exceeds the largest distance of any centre by more than some share.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points.pointset import as_unit_points
 
 SHARES = (1.0, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01, 1e-3, 1e-6)
-"""Shares by which the bound may exceed the dispersion, one per pass; each pass starts from the last one's result.
+"""Shares by which the bound may exceed the dispersion, one per pass; each pass starts from the previous result.
 
 With the last one the bound serves as the dispersion.
 """
@@ -26,11 +26,11 @@ WORK = 3e9
 """Default limit on the coordinates examined: some seconds."""
 
 ROUNDING = 1e-12
-"""Share by which the bound and the box are enlarged: halving and adding lose a thousandth of it."""
+"""Share by which the bound and the box are enlarged: a thousand times the rounding of halving and adding."""
 
 
 class DispersionBounds(NamedTuple):
-    """The dispersion is at least `lower`, the distance of some position from all points, and at most `upper`."""
+    """Bounds of the dispersion: `lower` is the distance of some position from all points, `upper` is proved."""
 
     lower: float
     upper: float
@@ -50,8 +50,8 @@ def dispersion_bounds(
     wrapping : array_like of bools, shape (d,), optional
         Axes that wrap; default: none.
     work : float
-        Limit on the coordinates examined, > 0.  By default some seconds: for a thousand points the bounds agree to five
-        digits up to d = 7, in d = 10 to about one per cent.
+        Limit on the coordinates examined, > 0; default: some seconds.  For a thousand points the bounds then agree to
+        five digits up to d = 7, and to about one per cent in d = 10.
 
     Raises
     ------

@@ -140,8 +140,8 @@ def average_squared(points: Floats, weights: Floats) -> ProductTerms:
 def pair_sums(columns: Floats, pairs: Pairs, want_gradient: bool) -> PairSums:
     """Sum the pair products of every point with all points, itself included, (n,), and the derivative of the total.
 
-    O(n^2 d) time, O(n d) memory.  The gradient, (d, n), is zero where it is not wanted, in about half the time.  Where
-    two points share a coordinate the kernels have a kink; the gradient is then one of the one-sided ones.
+    It takes O(n^2 d) time and O(n d) memory.  A gradient, (d, n), that is not wanted is zero and saves half the time.
+    If two points share a coordinate, the kernels have a kink, and the gradient is one of the one-sided ones.
     """
     if isinstance(pairs, MaximumPairs):
         return maximum_pair_sums(columns, *pairs, want_gradient)

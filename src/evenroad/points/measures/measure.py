@@ -21,10 +21,10 @@ from evenroad.points.pointset import as_unit_points
 class Measure:
     """One L2 discrepancy of points in the unit cube; small is even.  O(n^2 d) time, O(n d) memory.
 
-    ``squared`` is the closed form, ``rooted`` its square root, the discrepancy itself.  Where two points share a
-    coordinate most gradients are one-sided.  `terms` returns the parts of the closed form, `weighted` says whether it
-    takes coordinate weights, `periodic` and `reflectable` whether a shift modulo 1, or x -> 1 - x in a coordinate,
-    changes nothing.
+    ``squared`` is the closed form, ``rooted`` its square root, the discrepancy itself.  If two points share a
+    coordinate, most gradients are one-sided.  `terms` returns the parts of the closed form.  `weighted` says whether
+    it takes coordinate weights.  `periodic` says whether a shift modulo 1 changes nothing, and `reflectable` whether
+    x -> 1 - x in a coordinate does.
     """
 
     name: str
@@ -64,13 +64,13 @@ class Measure:
         return root, gradient
 
     def _squared(self, columns: Floats, weights: Floats, want_gradient: bool) -> tuple[float, Floats]:
-        """Return the squared measure, at least 0, and its gradient, (d, n), or zeros where it is not wanted."""
+        """Return the squared measure, at least 0, and its gradient, (d, n), or zeros if it is not wanted."""
         n = columns.shape[1]
         terms = self.terms(columns, weights)
         products = terms.linear.prod(axis=0)
         found = l2.pair_sums(columns, terms.pairs, want_gradient)
         sums, gradient = found.sums, found.gradient
-        # The parts nearly cancel: differences point by point keep digits that the textbook order loses for large n.
+        # The parts nearly cancel.  Differences per point keep digits that the textbook order loses for large n.
         value = float(np.mean((sums / n - products) - (products - terms.constant)))
         if want_gradient:
             gradient /= n * n
@@ -121,10 +121,10 @@ STAR_BUDGET = 1e10
 def star_discrepancy(points: object, budget: float = STAR_BUDGET) -> float:
     """Return the exact star discrepancy of points, (n, d) in [0, 1), n >= 1.
 
-    It is reached at boxes [0, y) whose upper sides pass through points or are 1, with or without the points on those
+    The maximum is at a box [0, y) whose upper sides pass through points or are 1, with or without the points on those
     sides (Niederreiter 1972; Gnewuch, Srivastav and Winzen 2009).  Branch and bound enumerates them by coordinate.
-    NotAvailable if the estimated work, n^d / d!, exceeds `budget`: by default n is 140000, 3900, 700, 260 and 139 at
-    most for d = 2 .. 6.
+    Raises NotAvailable if the estimated work, n^d / d!, exceeds `budget`.  The default allows n = 140000, 3900, 700,
+    260 and 139 for d = 2 .. 6.
     """
     coordinates = as_unit_points(points)
     n, d = coordinates.shape

@@ -17,7 +17,7 @@ from evenroad.points.measures.short_vectors import short_vectors, squared_length
 from evenroad.points.pointset import as_unit_points
 
 EXACT = 1e-5
-"""Largest distance from whole numbers, in units of 1/n, of the differences of a lattice's points."""
+"""Tolerance of the differences of a lattice's points from whole numbers, in units of 1/n."""
 
 
 def generating_vector(points: object) -> Ints | None:
@@ -52,9 +52,9 @@ def minima_ratio(n: int, vector: npt.ArrayLike, scale: npt.ArrayLike | None = No
 class Directions:
     """Where the k nearest neighbours of a lattice's points lie, far from faces.
 
-    `vectors`, (m, d) in units of 1/n, one of each opposite pair, are all that may join: among equally long ones any.
-    They span `rank` dimensions; where these are all d, the graph without obstacles falls apart into `sheets` (else
-    inf), one if the vectors generate the lattice: then the neighbours are `connected`.
+    `vectors`, (m, d) in units of 1/n, are one of each opposite pair, and include all of equal length.  They span
+    `rank` dimensions.  `sheets` is the number of components of the graph without obstacles if the rank is d, else inf.
+    It is 1 if the vectors generate the lattice: then the neighbours are `connected`.
     """
 
     vectors: Ints
@@ -66,12 +66,12 @@ class Directions:
 
     @property
     def connected(self) -> bool:
-        """Whether the neighbours lead everywhere, were there no obstacles and no faces."""
+        """Whether the graph of neighbours is connected without obstacles and faces."""
         return self.sheets == 1
 
 
 def neighbour_directions(n: int, vector: npt.ArrayLike, k: int, scale: npt.ArrayLike | None = None) -> Directions:
-    """Return what the k >= 1 nearest neighbours span, symmetrised: of opposite neighbours one is enough."""
+    """Return the directions of the k >= 1 nearest neighbours, symmetrised: one of two opposite ones is enough."""
     pairs = (require_count("k", k) + 1) // 2
     vectors, rank = short_vectors(n, vector, pairs, scale)
     vectors = vectors[rank <= rank[pairs - 1]]
@@ -83,9 +83,9 @@ def neighbour_directions(n: int, vector: npt.ArrayLike, k: int, scale: npt.Array
 
 
 def least_neighbours(n: int, vector: npt.ArrayLike, scale: npt.ArrayLike | None = None) -> int:
-    """Return the least k whose nearest neighbours, symmetrised, generate the lattice: then they lead everywhere.
+    """Return the least k whose nearest neighbours, symmetrised, generate the lattice, so that they connect all points.
 
-    Of equally near ones all count, though a graph has but some of them.
+    All equally near ones count, although a graph takes only some of them.
     """
     vectors, rank = short_vectors(n, vector, scale=scale)
     d = vectors.shape[1]
@@ -123,7 +123,7 @@ class _Span:
 
     @property
     def volume(self) -> int:
-        """Of a cell, where the rank is full."""
+        """Volume of a cell, if the rank is full."""
         return math.prod(abs(row[axis]) for axis, row in enumerate(self.rows) if row is not None)
 
 

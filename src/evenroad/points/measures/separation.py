@@ -19,7 +19,7 @@ def separation(points: object, periodic: bool = False) -> float:
     n, d = coordinates.shape
     if np.unique(coordinates, axis=0).shape[0] < n:
         return 0.0
-    # Here, as plans import the measures and do not wait for SciPy.
+    # Imported late: plans import the measures, and do not need SciPy.
     from scipy.spatial import cKDTree
 
     tree = cKDTree(coordinates, boxsize=np.ones(d)) if periodic else cKDTree(coordinates)
@@ -28,7 +28,7 @@ def separation(points: object, periodic: bool = False) -> float:
 
 
 def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
-    """Return the Riesz s-energy to the power 1/s: as s grows, the spacing n^(-1/d) over the smallest distance.
+    """Return the Riesz s-energy to the power 1/s; for large s this is the spacing n^(-1/d) over the smallest distance.
 
     The energy is (1/n) sum over i and j != i of (spacing / distance_ij)^s, with distances >= 10^-100.  `points` and
     `periodic` are as for :func:`separation`; the exponent `s`, >= 1, is 2d by default.
@@ -42,8 +42,8 @@ def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) ->
 def log_riesz_of_columns(columns: Floats, s: int, periodic: bool, want_gradient: bool) -> tuple[float, Floats]:
     """Return the log of the Riesz energy and its gradient, (d, n), at checked points of shape (d, n).
 
-    Powers are relative to the largest of a row, and rows are added in the log, so nothing overflows.  Coincident
-    points have the distance 10^-100 and no gradient.
+    Powers are relative to the largest of a row, and logs of rows are added, so nothing overflows.  Coincident points
+    have the distance 10^-100 and no gradient.
     """
     d, n = columns.shape
     rows = riesz_rows(columns, s, periodic, want_gradient)
@@ -53,7 +53,7 @@ def log_riesz_of_columns(columns: Floats, s: int, periodic: bool, want_gradient:
     total_log = largest + math.log(np.exp(row_logs - largest).sum())
     logarithm = total_log - math.log(n) - (s / d) * math.log(n)
     if want_gradient:
-        # A pair stands in the sum twice, so a point's own row holds half of what its coordinates change.
+        # Each pair occurs twice in the sum, so a point's own row is half of its gradient.
         pushes *= -2.0 * s * np.exp(row_logs - sum_logs - total_log)
     return logarithm, pushes
 

@@ -1,8 +1,8 @@
 """The short vectors of a rank-1 lattice: its basis reduced, and all vectors up to a length, exactly.
 
-A rank-1 lattice of n points is all i z / n, i and z whole numbers, and all whole vectors.  Here it is in units of 1/n,
-so that every vector is of whole numbers.  Reduction is Lenstra, Lenstra and Lovasz (1982), enumeration Fincke and Pohst
-(1985); floats only say where to look.
+A rank-1 lattice of n points is all i z / n plus whole vectors, with i and z whole numbers.  Here it is in units of
+1/n, so all vectors have whole numbers.  Reduction is that of Lenstra, Lenstra and Lovasz (1982), enumeration that of
+Fincke and Pohst (1985).  Floats only guide the search; the vectors are exact.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ LARGEST_N = 2**26
 """Largest n for which squared lengths are whole in float64, or nearly."""
 
 MOST_AXES = 16
-"""Largest dimension: beyond it a ball that holds a basis may hold too many vectors; here it holds a few dozen."""
+"""Largest dimension. Up to it a ball that holds a basis holds a few dozen vectors, beyond it perhaps too many."""
 
 MOST_VECTORS = 10**6
 """Largest number of vectors to examine: seconds."""
@@ -56,8 +56,8 @@ def short_vectors(
 ) -> tuple[Ints, Ints]:
     """Return the shortest vectors, (m, d) in units of 1/n, and the ranks of their lengths, (m,), equal for equal ones.
 
-    One of each opposite pair, at least `pairs`, and a basis among them.  `n`, `vector`, `scale` and errors are those of
-    :func:`lattice_basis`; NotAvailable if a ball that contains a basis contains above 10^6 vectors.
+    They are one of each opposite pair, at least `pairs`, with a basis among them.  `n`, `vector`, `scale` and errors
+    are those of :func:`lattice_basis`.  Raises NotAvailable if a ball that contains a basis has over 10^6 vectors.
     """
     basis = lattice_basis(n, vector, scale)
     weights = np.ones(len(basis)) if scale is None else np.asarray(scale, dtype=np.float64)
@@ -99,7 +99,7 @@ def _checked(n: int, vector: npt.ArrayLike, scale: npt.ArrayLike | None) -> tupl
 
 
 def _generated(n: int, z: list[int]) -> list[list[int]]:
-    """Return a basis: z times what makes one of its numbers 1, and n along each other axis."""
+    """Return a basis: z times the factor that makes one of its numbers 1, and n along each other axis."""
     pivot = next(axis for axis, each in enumerate(z) if math.gcd(each, n) == 1)
     inverse = pow(z[pivot], -1, n)
     row = [(each * inverse + n // 2) % n - n // 2 for each in z]
@@ -137,7 +137,7 @@ def _reduce(basis: list[list[int]], weights: list[float]) -> None:
     while row < len(basis):
         changed = True
         while changed:
-            # Again until nothing changes: slopes of large multiples are rounded.
+            # Repeated until nothing changes, because the slopes of large multiples are rounded.
             known.forget(row)
             known.add(basis[row])
             changed, slopes = False, known.slopes[row]

@@ -19,23 +19,23 @@ from evenroad.points.samplers.plain import Sobol
 from evenroad.points.samplers.rank_one import rank_one_vector
 
 IN_ALL_DIRECTIONS, MOST = (3, 4), 2**20
-"""Dimensions in which `even` is A_d*, up to this number of points: it takes several times their memory."""
+"""Dimensions in which `even` is A_d*, and its largest number of points: it needs several times their memory."""
 
 CONTRACTED_FROM = 4
-"""Dimension from which on the points of a roadmap in a box are contracted to its middle."""
+"""Dimension from which the points of a roadmap in a box are contracted to its middle."""
 
 CONTRACTION = 0.9
-"""Least factor by which they are: that of a roadmap with at most six neighbours."""
+"""Smallest factor of the contraction: that of a roadmap with at most six neighbours."""
 
 
 @dataclass(frozen=True)
 class Even(Korobov):
     """Our default: the lattice A_d* in three and four dimensions, else a rank-1 lattice with good projections.
 
-    A point of A_d* has 2 (d + 1) nearest neighbours in all directions, where the four and mostly the six nearest of a
-    rank-1 lattice lie in a plane or in space.  From five dimensions on that costs more in the spread of projections
-    than it gains.  There each set has a random order of the axes: these may differ in weight, as the joints of an arm
-    do.  ``studies/docs/which-points.md`` has the evidence.
+    A point of A_d* has 2 (d + 1) nearest neighbours in all directions.  The four nearest of a rank-1 lattice lie in a
+    plane, and mostly the six nearest in space.  From five dimensions on A_d* loses more in the spread of projections
+    than it gains by its neighbours.  There each set has a random order of the axes, because axes may differ in weight,
+    as the joints of an arm do.  ``studies/docs/which-points.md`` has the evidence.
     """
 
     name = "even"
@@ -59,7 +59,7 @@ class Even(Korobov):
 def contraction(k: int) -> float:
     """Return the factor for a roadmap of k neighbours: 1 - 0.6 / k, and at least :data:`CONTRACTION`.
 
-    With few neighbours motions are long, and shorter ones gain more than the corners that are given up.
+    With few neighbours motions are long.  Shorter motions then gain more than the lost corners of the cube cost.
     """
     return max(CONTRACTION, 1.0 - 0.6 / k)
 
@@ -78,7 +78,7 @@ class Sliced:
     """Poses for sparse roadmaps in SE(3): scrambled Sobol points, a share of which lies in one slice.
 
     The slice is a Korobov lattice of positions with one random rotation.  It has three dimensions instead of six, so
-    few neighbours connect its poses by short motions without a turn; the others lead there.
+    few neighbours connect its poses, by short motions without a turn.  The other poses lead to the slice.
     """
 
     share: float = 1 / 3
@@ -104,7 +104,7 @@ class Sliced:
             cube[:sliced, :3] = Korobov().draw(sliced, 3, rng=random).points
         if sliced < n:
             cube[sliced:] = Sobol().draw(n - sliced, d, rng=random).points
-        # In no order: some rules join each point to earlier ones.
+        # Shuffled, because some rules join each point to earlier ones.
         points = np.clip(random.permutation(cube), 0.0, np.nextafter(1.0, 0.0))
         method = f"{sliced} of one rotation, the others Sobol"
         return PointSet(points, Origin(family=self.name, method=method, seed=seed_of(rng)))

@@ -1,8 +1,8 @@
-"""An extensible lattice: a sequence whose every beginning is well spread, for any n and d.
+"""An extensible lattice: a sequence whose beginnings are all well spread, for any n and d.
 
 Point i is phi(i) z modulo 1, shifted, with phi van der Corput's radical inverse in base 2 and z whole numbers
-(Hickernell, Hong, L'Ecuyer and Lemieux 2000): the first 2^m points are a rank-1 lattice for every m, and each further
-one lies in a hole of it.  Digit by digit z is searched for all lengths at once.
+(Hickernell, Hong, L'Ecuyer and Lemieux 2000).  The first 2^m points are a rank-1 lattice for every m, and each further
+one lies in a hole of it.  z is searched digit by digit, for all lengths at once.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ KEPT, TRIED = 48, 32
 """Number of vectors kept from one digit to the next, and of continuations tried for each."""
 
 MANY = 64 << TOGETHER
-"""Number of coordinates of a lattice from which on fewer vectors are kept and tried: 64 axes of all points."""
+"""Number of coordinates of a lattice from which fewer vectors are kept and tried: 64 axes of all points."""
 
 WORK = 2 * 10**7
 """Number of coordinates examined to choose a digit that is not searched together."""
@@ -52,9 +52,9 @@ TIE = 1e-9
 
 @dataclass(frozen=True)
 class Growing:
-    """Points `start` >= 0, `start` + 1, ... of the growing lattice, its axes in random order, under one random shift.
+    """Points `start` >= 0, `start` + 1, ... of the growing lattice, with axes in random order and one random shift.
 
-    The sets of one seed begin with those of fewer points.
+    With one seed, a set begins with every set of fewer points.
     """
 
     start: int = 0
@@ -96,11 +96,10 @@ def reversed_digits(first: int, count: int) -> Ints:
 def growing_vector(d: int, digits: int = DIGITS) -> Ints:
     """Return z, (d,), with at least this number of binary digits of the sequence; the first component is 1.
 
-    The first 11 digits are found by a beam search over all beginnings of at most 2048 points together, the next 9 one
-    by one, the rest are random; points below 2^m depend on the first m digits alone.  The score of a vector is
-    :data:`SPREAD` log(E) / (2 d) + :data:`EVENNESS` log(W): the mean over those beginnings, with E the periodic Riesz
-    energy with exponent 2 d and W the wrap-around L2 discrepancy, which is the root of the mean square of Hickernell's
-    over all shifts.
+    A beam search over all beginnings of at most 2048 points finds the first 11 digits together.  The next 9 are found
+    one by one, and the rest are random.  Points below 2^m depend on the first m digits alone.  The score of a vector is
+    the mean of :data:`SPREAD` log(E) / (2 d) + :data:`EVENNESS` log(W) over those beginnings.  E is the periodic Riesz
+    energy with exponent 2 d, W the wrap-around L2 discrepancy: the root mean square of Hickernell's over all shifts.
     """
     vector = _searched(d, max(min(digits, SEARCHED), TOGETHER))
     rest = np.random.default_rng(d).integers(0, 2 ** (DIGITS - SEARCHED), d) << SEARCHED
@@ -124,7 +123,7 @@ def _searched(d: int, digits: int) -> Ints:
 
 
 def _best(found: Ints, scores: Floats, digit: int, tried: int, kept: int) -> tuple[Ints, Floats]:
-    """Return the best continuations, (m, d), of vectors of one digit less, best first, and their scores, (m,)."""
+    """Return the best extensions, (m, d), of vectors of one digit less, best first, and their scores, (m,)."""
     d = found.shape[1]
     if 2 ** (d - 1) <= tried:
         bits = np.arange(2 ** (d - 1))[:, np.newaxis] >> np.arange(d - 1) & 1
@@ -167,11 +166,11 @@ def _scores(vectors: Ints, digit: int) -> Floats:
 
 
 def _log_sums(ratios: Floats, d: int, multiples: Floats) -> Floats:
-    """Return the logs of the sums of d-th powers of ratios, (m, steps), as often as each beginning has them."""
+    """Return the logs of the sums of d-th powers of ratios, (m, steps), weighted by their number in each beginning."""
     sums = ratios**d @ multiples.T
     if sums.all():
         return np.log(sums)
-    # The shortest difference of all is none of this beginning's, beside which its own are nothing in many dimensions.
+    # A beginning may lack the shortest difference. In many dimensions its own powers vanish beside that one's.
     with np.errstate(divide="ignore"):
         logs: Floats = np.logaddexp.reduce(d * np.log(ratios)[:, np.newaxis] + np.log(multiples), axis=2)
     return logs

@@ -27,7 +27,7 @@ MAX_N = 2**26
 """Largest n for which products of two residues, and the multiple of n next to them, are exact in float64."""
 
 MOST_D = 1024
-"""Largest dimension of lattices that are scored by a discrepancy: its products are numbers there."""
+"""Largest dimension of lattices that are scored by a discrepancy: beyond it the products overflow."""
 
 WORK = 3 * 10**7
 """Limit on the coordinates that a search examines: it bounds the number of multipliers tried."""
@@ -36,7 +36,7 @@ FEWEST_TRIED = 32
 """Least number of multipliers to try, however large n and d are."""
 
 BLOCK = 2**14
-"""Number of lattice points, of all multipliers, between two checks of which multipliers can still win."""
+"""Number of lattice points, over all multipliers, after which multipliers that cannot win are dropped."""
 
 ROWS = 2**13
 """Number of points of a set that are made together."""
@@ -52,8 +52,8 @@ TIE = 1e-9
 class Korobov:
     """The points i (1, a, a^2, ..., a^(d-1)) / n modulo 1 (Korobov 1959), under one random shift modulo 1.
 
-    The multiplier a is :func:`korobov_generator`, of the least energy: no other objective was better in planning.  It
-    has no common divisor with n, so each coordinate takes n equally spaced values, each once.
+    The multiplier a is that of :func:`korobov_generator`, of the least energy: no other objective planned better.  It
+    has no common divisor with n, so each coordinate takes n equally spaced values once.
     """
 
     name = "korobov"
@@ -86,8 +86,8 @@ class Korobov:
 def shifted_lattice(n: int, vector: Sequence[int], shift: Floats) -> Floats:
     """Return the points i z / n + shift modulo 1, i = 0 .. n - 1, (n, d), read-only; n <= 2**26 and 0 <= z < n.
 
-    In blocks of rows, so that no second array of this size is needed.  The remainders of a block are those of the first
-    one plus a whole number, minus n where they reach it: no number is divided, and below 2**53 each is exact.
+    They are made in blocks of rows, without a second array of this size.  The remainders of a block are those of the
+    first one plus a whole number, minus n if they reach it.  No number is divided, so each is exact below 2**53.
     """
     rows, points = min(n, ROWS), np.empty((n, len(vector)))
     remainders = np.array([np.arange(rows) * z % n for z in vector], dtype=np.float64)
@@ -107,7 +107,7 @@ def shifted_lattice(n: int, vector: Sequence[int], shift: Floats) -> Floats:
 
 
 def require_dimensions(d: int) -> None:
-    """Raise InvalidValue for more dimensions than products over all of them may have."""
+    """Raise InvalidValue if products over this many dimensions would overflow."""
     if d > MOST_D:
         raise InvalidValue(
             f"d must be at most {MOST_D} for a lattice with good projections, got {d}: discrepancies in more dimensions"
@@ -118,10 +118,10 @@ def require_dimensions(d: int) -> None:
 def korobov_generator(n: int, d: int) -> int:
     """Return the multiplier a whose Korobov lattice of n points has the smallest periodic Riesz energy, s = 2d.
 
-    a, n - a and the inverse of a modulo n give the same lattice up to a reflection or the order of the axes; one
-    of the four is tried, and the smallest is returned.  While n^2 d <= 10^8 all multipliers without a common
-    divisor with n are tried, so a is the best one; above that a fixed choice of them spread over 1 .. n/2, as
-    many as :data:`WORK` allows.  Raises InvalidValue unless n is 1 .. 2**26 and d >= 1.
+    a, n - a and the inverse of a modulo n give the same lattice up to a reflection or the order of the axes.  One
+    of the four is tried, and the smallest is returned.  While n^2 d <= 10^8, all multipliers without a common
+    divisor with n are tried, so a is the best one.  Above that a fixed choice of them is tried, spread over
+    1 .. n/2, as many as :data:`WORK` allows.  Raises InvalidValue unless n is 1 .. 2**26 and d >= 1.
     """
     n, d = require_count("n", n), require_count("d", d)
     if n > MAX_N:
@@ -135,7 +135,7 @@ def _searched(n: int, d: int) -> int:
 
 
 def _candidates(n: int, d: int) -> Ints:
-    """Return the multipliers that are tried, each the smallest of the four of its lattice."""
+    """Return the multipliers to try, each the smallest of the four that give its lattice."""
     tried = islice(multipliers(n), max(FEWEST_TRIED, WORK // (n // 2 * d)))
     pairs = ((a, pow(a, -1, n)) for a in tried)
     return np.array(sorted({min(a, n - a, b, n - b) for a, b in pairs}), dtype=np.int64)
@@ -152,9 +152,9 @@ def powers(multipliers: Ints, n: int, d: int) -> Floats:
 
 
 def multipliers(n: int) -> Iterator[int]:
-    """Yield each number of 1 .. n/2 that has no common divisor with n, in an order whose every part is spread out.
+    """Yield each number of 1 .. n/2 that has no common divisor with n, in an order whose parts are all spread out.
 
-    Steps of the golden ratio: regular steps would land near fractions with small denominators, which are bad.
+    It steps by the golden ratio. Regular steps would land near fractions with small denominators, which are bad.
     """
     half = n // 2
     stride = max(1, round(half * 0.6180339887498949))
@@ -169,8 +169,8 @@ def multipliers(n: int) -> Iterator[int]:
 def _least_energy(candidates: Ints, n: int, d: int) -> int:
     """Return the smallest of the candidates of least energy.
 
-    All partial sums grow together, and a candidate is dropped when its sum exceeds the whole energy of a promising
-    one.  The first coordinate of point j is j / n, so the decisive short distances come early.
+    All partial sums grow together.  A candidate is dropped when its sum exceeds the whole energy of a promising one.
+    The first coordinate of point j is j / n, so the decisive short distances come early.
     """
     vectors, half = powers(candidates, n, d), n // 2
     log_sums = np.full(len(candidates), -np.inf)
@@ -182,7 +182,7 @@ def _least_energy(candidates: Ints, n: int, d: int) -> int:
         log_sums = np.logaddexp(log_sums, _log_energies(vectors, n, first, last))
         first, looks = last + 1, looks + 1
         if looks & (looks - 1) == 0:
-            # A whole energy costs as much as many looks: ever more rarely, after 1, 2, 4, 8, ... looks.
+            # A whole energy costs as much as many rounds, so it is computed after 1, 2, 4, 8, ... rounds only.
             promising = vectors[[np.argmin(log_sums)]]
             parts = range(1, half + 1, PART)
             whole = [_log_energies(promising, n, at, min(half, at + PART - 1))[0] for at in parts]
@@ -196,15 +196,15 @@ def _log_energies(vectors: Floats, n: int, first: int, last: int) -> Floats:
     """Return the log of the sum of distance^(-2d) over the points first .. last <= n/2 of every lattice.
 
     Point n - j is the mirror image of j, so half of the points are enough; n/2 is its own and counts half.
-    Distances are in units of 1/n: squared they are integers, and exact.  Powers are taken relative to the
-    shortest one, so that nothing overflows whatever d is.
+    Distances are in units of 1/n, so their squares are integers, and exact.  Powers are relative to the
+    shortest one, so nothing overflows for any d.
     """
     d = vectors.shape[1]
     j = np.arange(first, last + 1, dtype=np.float64)
     squared = np.zeros((len(vectors), len(j)))
     gap, multiple = np.empty_like(squared), np.empty_like(squared)
     for k in range(d):
-        # To the nearest multiple of n; where rounding could choose the other of two, both are n/2 away.
+        # Distance to the nearest multiple of n.  Rounding may choose the other one only if both are n/2 away.
         np.multiply(vectors[:, k, np.newaxis], j, out=gap)
         np.rint(np.multiply(gap, 1.0 / n, out=multiple), out=multiple)
         gap -= np.multiply(multiple, n, out=multiple)

@@ -16,21 +16,21 @@ from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
 
 MAX_D = 12
-"""Largest dimension: beyond it the ball around the cube holds thousands of lattice points for each one in the cube."""
+"""Largest dimension. Beyond it the ball around the cube has thousands of times as many lattice points as the cube."""
 
 
 @dataclass(frozen=True)
 class Lattice:
     """A_d* (Conway and Sloane 1999, chapter 4.6.6), under a random rotation and a random shift.
 
-    To keep exactly n points, a cube around a uniformly random centre in the rotated lattice grows until it holds n,
-    goes on half the distance to the point that would enter next, and is scaled to the unit cube.
+    To keep exactly n points, a cube around a uniformly random centre in the rotated lattice grows until it holds n.
+    It grows by half the distance to the next point, and is then scaled to the unit cube.
     """
 
     name = "lattice"
     about = "A_d*, randomly rotated and shifted"
     any_n = True
-    # Those of the cube give an equally likely set; a shift would join two faces, where the lattice does not match.
+    # Symmetries of the cube give an equally likely set. A shift would join two faces where the lattice does not match.
     symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
@@ -52,7 +52,7 @@ def around_cube(n: int, d: int, random: np.random.Generator) -> tuple[Floats, fl
     basis = _unit_density_basis(d)
     half = 0.5 * (n + 1) ** (1 / d)
     while True:
-        # A small margin: it only changes how many candidates there are.
+        # The margin only changes the number of candidates.
         half *= 1.03
         offsets = _points_in_ball(basis, shift, radius=half * np.sqrt(d)) @ rotation
         reach = np.abs(offsets).max(axis=1)
@@ -79,8 +79,8 @@ def _random_rotation(d: int, random: np.random.Generator) -> Floats:
 def _points_in_ball(basis: Floats, shift: Floats, radius: float) -> Floats:
     """Return every (z + shift) @ basis, z integer, within `radius` of the origin, shape (m, d).
 
-    The basis is lower triangular, so coordinate k depends on z_k .. z_d only: fix the last coefficient first and
-    keep the partial vectors that can still end inside (Fincke and Pohst 1985), all of them at once.
+    The basis is lower triangular, so coordinate k depends on z_k .. z_d only.  The last coefficient is fixed first, and
+    all partial vectors that can still end inside are kept together (Fincke and Pohst 1985).
     """
     d = basis.shape[0]
     partial = np.zeros((1, d))
@@ -97,7 +97,7 @@ def _points_in_ball(basis: Floats, shift: Floats, radius: float) -> Floats:
 
 
 MARGINS = (0.0, 0.2, 0.35, 0.5, 0.6, 0.7, 0.85, 1.0)
-"""Margins beyond the cube, on each side, within which the lattice is cut out: shares of its covering radius."""
+"""Margins of the lattice beyond the cube, on each side, as shares of its covering radius."""
 
 WORK = 2e8
 """Limit on the coordinates examined to measure one margin: a fifth of a second at most."""
@@ -107,17 +107,16 @@ WORK = 2e8
 class Cover:
     """A_d* over the cube and a margin, with points outside projected to the cube.
 
-    A lattice cut out at the faces has its largest holes at corners, twice as wide as inside.  The projection makes no
-    distance to a position of the cube longer, since the cube is convex.  A margin of the covering radius keeps that of
-    the lattice: sqrt(d (d + 2) / (12 (d + 1))) (d + 1)^(1 / (2 d)) for one point per unit of volume (Conway and Sloane
-    1999, chapter 4.6.6).  In d >= 4 that costs too many points, so the margin with the smallest certified dispersion is
-    taken.
+    A lattice cut at the faces has its largest holes at corners, twice as wide as inside.  The cube is convex, so the
+    projection lengthens no distance to a position of the cube.  A margin of the covering radius keeps the radius of the
+    lattice: sqrt(d (d + 2) / (12 (d + 1))) (d + 1)^(1 / (2 d)) for one point per unit of volume (Conway and Sloane
+    1999, chapter 4.6.6).  In d >= 4 that costs too many points: the margin of smallest certified dispersion is used.
     """
 
     name = "cover"
     about = "A_d* with the smallest dispersion, faces included"
     any_n = True
-    # As for the lattice; a shift would also move points off the faces.
+    # Symmetries of the cube, as for the lattice; a shift would also move points off the faces.
     symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:

@@ -37,14 +37,14 @@ class Uniform:
 class Sukharev:
     """The grid of smallest l_inf dispersion among k^d points (Sukharev 1971).
 
-    With `allow_fewer` an n that is no k^d gives the largest grid with at most n points, instead of being refused.
+    With `allow_fewer`, an n that is no k^d gives the largest grid of at most n points; else it is refused.
     """
 
     allow_fewer: bool = False
     name = "sukharev"
     about = "the grid of k^d cell centres; always the same set"
     any_n = False
-    # Those of the cube; a shift would move its cells off the faces.
+    # Symmetries of the cube; a shift would move the cells off the faces.
     symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
@@ -77,7 +77,7 @@ class _Sequence:
     start: int = 0
     name = ""
     any_n = True
-    # Known for their star discrepancy, which depends on the corner at the origin.
+    # These sequences are known for their star discrepancy, which depends on the corner at the origin.
     symmetries = frozenset({Symmetry.PERMUTATION})
 
     def __post_init__(self) -> None:
@@ -92,8 +92,8 @@ class _Sequence:
 class Halton(_Sequence):
     """Halton's sequence in the first d prime bases (Halton 1960), from the index `start` >= 0 on.
 
-    With `scramble`, random digit permutations (Owen 2017) drawn from `rng`; else the plain sequence, which ignores
-    `rng`, and whose index 0 is the origin of the cube.
+    With `scramble`, digits are permuted at random (Owen 2017), from `rng`.  The plain sequence ignores `rng`, and its
+    index 0 is the origin of the cube.
     """
 
     name = "halton"

@@ -1,8 +1,8 @@
-"""Rank-1 lattices for roadmaps: points that keep apart, and whose projections do so as well.
+"""Rank-1 lattices for roadmaps: points that are well separated, also in their projections.
 
-A lattice of least energy alone may be poor in projections: of 512 points in four dimensions, the best Korobov lattice
-has pairs of axes in which the points lie on a quarter as many lines as they could.  A wall with a gap bounds two or
-three axes only, so what passes there is decided in a projection.
+A lattice of least energy alone may be poor in projections.  In the best Korobov lattice of 512 points in four
+dimensions, some pairs of axes have the points on a quarter as many lines as possible.  A wall with a gap bounds only
+two or three axes, so a projection decides whether a motion passes.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ STARTS, SWEEPS = 3, 20
 """Number of descents, the first from the best powers, and the most sweeps over all axes in each."""
 
 LARGEST = 2**14
-"""Number of points up to which vectors that are no powers are searched."""
+"""Number of points up to which vectors other than powers are searched."""
 
 TRIED, FEWEST_TRIED = 2 * 10**6, 32
 """Number of points of all lattices that a step of a descent examines, for each axis, and least number of lattices."""
@@ -49,9 +49,9 @@ BLOCK = 2**14
 def rank_one_vector(n: int, d: int) -> tuple[int, ...]:
     """Return the generating vector of small energy and discrepancy; in the plane that of :class:`Korobov`.
 
-    The score is log(E) / (2 d) + :data:`EVENNESS` log(W), with E the periodic Riesz energy, s = 2d, and W the
-    wrap-around L2 discrepancy, which is the root of the mean square of Hickernell's over all shifts.  Axis after axis
-    tries all numbers without common divisor with n, or as many as :data:`TRIED` allows.  InvalidValue if n > 2**26 or
+    The score is log(E) / (2 d) + :data:`EVENNESS` log(W), with E the periodic Riesz energy, s = 2d.  W is the
+    wrap-around L2 discrepancy, the root mean square of Hickernell's over all shifts.  Each axis in turn tries all
+    numbers without common divisor with n, or as many as :data:`TRIED` allows.  Raises InvalidValue if n > 2**26 or
     d > 1024.
     """
     if n > MAX_N:
@@ -68,7 +68,7 @@ def rank_one_vector(n: int, d: int) -> tuple[int, ...]:
 
 
 def _descended(n: int, first: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the vector of the least score of all descents, one of them from `first`."""
+    """Return the vector of least score over all descents, one of which begins at `first`."""
     d, random = len(first), np.random.default_rng([n, len(first)])
     most = max(FEWEST_TRIED, TRIED // (n * (d - 1)))
     units = np.array([i for i in range(1, n // 2 + 1) if gcd(i, n) == 1])
@@ -103,7 +103,7 @@ def _first_least(scores: Floats) -> int:
 
 
 def _terms(vector: Ints, steps: Ints, n: int) -> tuple[Floats, Floats]:
-    """Return for each number of a vector and each step what the axis adds to a squared distance, and its kernel."""
+    """Return each axis's term of a squared distance, and its kernel, for each number of a vector and each step."""
     gaps = steps * vector[:, np.newaxis] % n / n
     gaps = np.minimum(gaps, 1.0 - gaps)
     return gaps * gaps, 1.5 - gaps * (1.0 - gaps)
@@ -111,7 +111,7 @@ def _terms(vector: Ints, steps: Ints, n: int) -> tuple[Floats, Floats]:
 
 def _summed(squared: Floats, kernel: Floats, steps: Ints, n: int, d: int) -> tuple[Floats, Floats]:
     """Return the sums over all differences, each of which stands for its mirror image, too: rows of (m, steps)."""
-    # In units of the spacing.  Nobody takes a lattice that is so poor that its energy is beyond the largest number.
+    # Distances are in units of the spacing.  A lattice whose energy overflows is too poor to be chosen.
     with np.errstate(over="ignore", under="ignore"):
         energy = integer_power(n ** (-2.0 / d) / squared, d)
     if 2 * steps[-1] == n:
