@@ -11,6 +11,7 @@ from evenroad.errors import NotAvailable, UnknownName
 from evenroad.loading.robot_file import RobotFile
 from evenroad.robot import find_robot
 from evenroad.robots.kinematics import joint_values
+from evenroad.space.path import configuration_at
 from evenroad.viz.bodies import robot_parts
 from evenroad.viz.player import page_of, save_page
 
@@ -63,3 +64,11 @@ def test_the_page_names_the_link_and_the_obstacle_that_come_nearest_and_how_far(
     link, obstacle = reach.nearest
     said = _data(page_of(reach))["title"]
     assert said.endswith(f"keeps {1e3 * reach.clearance:.1f} mm from obstacles: {link} from {obstacle}")
+
+
+def test_the_page_says_at_each_state_what_a_path_that_stays_there_keeps(reach):
+    data = _data(page_of(reach))
+    for row in (0, 120, -1):
+        state = configuration_at(reach.path, reach.world.space, np.linspace(0.0, 1.0, len(data["clearance"])))[row]
+        kept = reach.world.path_clearance(np.stack([state, state]))
+        assert data["clearance"][row] == pytest.approx(kept, abs=2e-4)

@@ -331,6 +331,10 @@ class ArmWorld(Changes, OneOrMany):
         metres, nearest = self._measuring.distances(q, MOST, to_itself)
         return metres, [self._names(contact, anew=True) for contact in nearest]
 
+    def obstacle_distances(self, q: Floats) -> Floats:
+        """Return lower bounds of the distances from obstacles of configurations, (n, dim): (n,), 1 m at most [m]."""
+        return self._unpadded._distances(q, to_itself=False)[0]
+
     def nearest_along(self, path: Floats) -> tuple[str, str] | None:
         """Return the link and the obstacle that come nearest to each other along a path, (p, dim); None beyond 1 m."""
         metres, pairs = self._unpadded._distances(resample(path, self.space, self.resolution / 4.0)[0], to_itself=False)

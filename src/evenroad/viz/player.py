@@ -115,6 +115,8 @@ def states_of(result: PlanResult, world: ArmWorld | DiskWorld, timed: Timed | No
 
 def clearances(world: World, states: Floats) -> list[float] | None:
     """Return a lower bound of the distance from obstacles at each of some states, (n, dim), None if not known [m]."""
+    if isinstance(world, ArmWorld):
+        return rounded(world.obstacle_distances(states), 4) if world.valid(states).all() else None
     if not isinstance(world, MeasuresPaths):
         return None
     bounds = [world.path_clearance(np.stack([state, state])) for state in states[:: len(states) // 120 + 1]]
