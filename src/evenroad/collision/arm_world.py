@@ -332,7 +332,23 @@ class ArmWorld(Changes, OneOrMany):
         return metres, [self._names(contact, anew=True) for contact in nearest]
 
     def obstacle_distances(self, q: Floats) -> Floats:
-        """Return lower bounds of the distances from obstacles of configurations, (n, dim): (n,), 1 m at most [m]."""
+        """Return lower bounds of the distances from obstacles, 1 m at most [m].
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, dim)
+
+        Returns
+        -------
+        float64 ndarray, shape (n,)
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> er.ArmWorld("ur5", "empty").obstacle_distances(np.zeros((2, 6))).round(6).tolist()
+        [1.0, 1.0]
+        """
         return self._unpadded._distances(q, to_itself=False)[0]
 
     def nearest_along(self, path: Floats) -> tuple[str, str] | None:
@@ -341,13 +357,11 @@ class ArmWorld(Changes, OneOrMany):
         return pairs[int(metres.argmin())]
 
     def path_clearance(self, path: Floats) -> float | None:
-        """Return the distance from obstacles that a path, (p, dim), is proved to keep, to 0.1 mm; None if none [m].
-
-        The clearances of obstacles and the padding of links are part of it.
-        """
+        """Return the distance to obstacles that a path, (p, dim), is proved to keep, to 0.1 mm [m]; None if none."""
+        bare = self._unpadded
 
         def keeps(distance: float) -> bool:
-            return bool(replace(self._unpadded, clearance=distance).validate(path).all())
+            return bool(bare._copy(bare.scene, distance).validate(path).all())
 
         return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)
 
