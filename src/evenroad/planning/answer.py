@@ -1,4 +1,4 @@
-"""Turns what an attempt found into the result that the caller gets."""
+"""Makers of the result that the caller gets from an attempt."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ def answer(
     best: Searched | None = None,
     keep_graph: bool = True,
 ) -> PlanResult:
-    """Return the result of a search over this number of points, with its graph unless it is to be left out.
+    """Return the result of a search over this number of points, with its graph if that is wanted.
 
-    Where another search found the `best` path, that one is the answer.
+    If another search found a `best` path, that path is the answer.
     """
     states = searched.states
     counts = dict(
@@ -59,7 +59,7 @@ def answer(
     if best.cost is not None:
         nodes, q = best.found.nodes, best.states.configurations
         goal = attempt.goals[nodes[-1] - len(q)]
-        # A disk's paths along a roadmap stay equal to published rows.
+        # Paths of a disk along a roadmap must stay equal to published results.
         by_connector = attempt.edge_cost is None and isinstance(attempt.world, ValidatesPaths)
         result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_connector=by_connector)
         return replace(result, roadmap=graph)
@@ -69,7 +69,7 @@ def answer(
         limits = attempt.problem.budget.text(samples=attempt.grows)
         result = failed(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
     else:
-        # With ``complete`` only more points help.
+        # With the rule ``complete``, only more points help.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
         advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt, points)
         result = failed(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
@@ -86,7 +86,7 @@ def connected(attempt: Attempt, connection: Connection) -> PlanResult:
 def in_its_time(
     solve: Callable[Concatenate[Solver, Problem, More], PlanResult],
 ) -> Callable[Concatenate[Solver, Problem, More], PlanResult]:
-    """Return a planner's `solve` that ends with the problem's time, and says so where it has nothing to hand out."""
+    """Return a planner's `solve` that ends with the problem's time, and says so if it has no result by then."""
 
     @wraps(solve)
     def solved(planner: Solver, problem: Problem, /, *args: More.args, **more: More.kwargs) -> PlanResult:
@@ -94,7 +94,7 @@ def in_its_time(
             raise InvalidValue("a planner knows no constraints: er.plan(..., constraints=...) divides such a problem")
         try:
             if is_limited():
-                # By the caller of the planner: the problem has what is left of that.
+                # The caller of the planner sets the deadline; the problem has the time that is left.
                 return solve(planner, problem, *args, **more)
             with within(problem.budget.seconds):
                 return solve(planner, problem, *args, **more)
@@ -115,9 +115,9 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
 
 
 def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None:
-    """Return the result where the world finds that no path leads to any goal, with its reason; else None.
+    """Return the result with its reason if the world finds that no path leads to any goal; else None.
 
-    The status is ``not_connected`` where that is proved.
+    The status is ``not_connected`` if that is proved.
     """
     with attempt.watch("proof"):
         attempt.proof_tried |= not quickly
@@ -134,7 +134,7 @@ def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None
 
 
 def apart_in(problem: Problem, *, quickly: bool = False) -> Apart | None:
-    """Return why no path of a problem exists, quickly or not, or None; other postures would do at its goal poses."""
+    """Return why no path of a problem exists, by a quick or full proof, or None; goal poses allow any posture."""
     world, given = problem.world, problem.given
     if not isinstance(world, ShowsApart):
         return None
@@ -158,7 +158,7 @@ def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:
 def _with_path(
     attempt: Attempt, raw: Floats, raw_cost: float, goal: int, counts: dict[str, int], *, by_connector: bool
 ) -> PlanResult:
-    """Return the result with a path, smoothed if wanted: by the connector where there is one and costs are lengths."""
+    """Return the result with a path, smoothed if wanted: by the connector if there is one and costs are lengths."""
     world, problem = attempt.world, attempt.problem
     path, length, cost, is_cut = raw, raw_cost, attempt.edge_cost, False
     if problem.smooth:
@@ -191,7 +191,7 @@ def _with_path(
 
 
 def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:
-    """Return, in words, how far start and goals reach and what is missing, and add the counts."""
+    """Return in words how far start and goals reach and what is missing; add the counts."""
     states = searched.states
     if searched.found.reached is not None:
         counts["start_component"] = reached = searched.found.reached - 1
@@ -223,20 +223,20 @@ def _few_directions(attempt: Attempt, points: int) -> str:
     from evenroad.points.measures.rank_one import least_neighbours
     from evenroad.points.measures.short_vectors import MOST_AXES, lattice_basis
 
-    # Nearest points come in opposite pairs: at least this number is needed.
+    # Nearest points come in opposite pairs, so at least this number is needed.
     least, advice = 2 * d - 1, f"at least {2 * d - 1} are needed"
     if d <= MOST_AXES and not ("permuted" in method and np.ptp(scale) > 1e-9 * scale[0]):
         numbers = [int(each) for each in lattice[2].split()]
         vector = [pow(numbers[0], i, points) for i in range(d)] if lattice[1] == "a" else numbers
         try:
             if (np.abs(lattice_basis(points, vector, scale)) >= points).any():
-                # The box is so long, or the points are so few, that neighbours would lie beyond it.
+                # The box is too long, or there are too few points: neighbours would lie beyond it.
                 return ""
             needed = least_neighbours(points, vector, scale)
         except EvenroadError:
-            # Even longer, or the points are not all of the lattice's.
+            # The box is even longer, or some points of the lattice are missing.
             return ""
-        # Fewer are enough if equally near ones happen to be the right ones.
+        # Fewer suffice if the right ones among equally near points are chosen.
         least, advice = needed, f"{max(needed, least)} would not"
     return f"; the nearest {k} of this lattice leave directions out, {advice}" if k < least else ""
 
@@ -264,7 +264,7 @@ class _MadeBy(TypedDict):
 
 
 def _made_by(attempt: Attempt) -> _MadeBy:
-    """Return the attributes of a result that say who searched, on which points, and for how long."""
+    """Return the attributes of a result about its planner, points and times."""
     return dict(
         origin=attempt.origin,
         rule=attempt.rule,
@@ -275,7 +275,7 @@ def _made_by(attempt: Attempt) -> _MadeBy:
 
 
 def _searched_graph(states: EdgeStates, terminals: int) -> SearchedGraph:
-    """Return the graph without invalid nodes, start and goals as the last `terminals`, and with the free edges."""
+    """Return the graph of valid nodes and free edges; start and goals are the last `terminals` nodes."""
     kept = states.node_states != BLOCKED
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = states.edges[states.edge_states == FREE]

@@ -1,4 +1,4 @@
-"""Tree planning for an arm: two trees join start and goal, then the path is shortened; every motion is proved free."""
+"""Tree planning for an arm: two trees join start and goal, and smoothing follows; every motion is proved free."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
 _SLICE = 10_000
-"""Batches of sixteen checks between two looks at what interrupts: about 100 ms."""
+"""Number of batches of sixteen checks between two checks for interrupts: about 100 ms."""
 
 
 def connect(
@@ -34,13 +34,13 @@ def connect(
 ) -> Connection:
     """Join a start, (dim,), to one of several goals, (g, dim), by two trees that grow until they meet.
 
-    Every motion of the path is proved free throughout, as by ``CertifiedWorld``.  The same arguments give the same
-    path; the time [s] only decides whether there is one.  Goals that are not free are left out.  The trees grow towards
-    a `sequence` of points of the unit cube, (n, dim), by default 2048 points of Halton's sequence; after the last point
-    it repeats, shifted.
+    Every motion of the path is proved free, as by ``CertifiedWorld``.  The same arguments give the same path; the
+    time [s] only decides whether one is found.  Goals that are not free are ignored.  The trees grow towards a
+    `sequence` of points of the unit cube, (n, dim), by default 2048 points of Halton's sequence.  After the last point
+    the sequence repeats with a shift.
 
-    The path is empty if the budget is spent, or if start or goals are not free.  InvalidValue if an argument is no such
-    array or number.
+    The path is empty if the budget is spent, or if start or goals are not free.  Raises InvalidValue if an argument is
+    no such array or number.
     """
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
@@ -52,7 +52,7 @@ def connect(
 
 
 def joined(world: ArmWorld, terminals: Floats, samples: planning.Points, most_motions: int) -> Connection:
-    """Do as `connect`, for a start and goals in one array, (1 + g, dim)."""
+    """Call `connect` for a start and goals in one array, (1 + g, dim)."""
     if world.fixed_contact is not None:
         return Connection(np.empty((0, terminals.shape[1])), -1, 0, 0, 0)
     return _grown(world, terminals, samples, most_motions)[0]
@@ -63,7 +63,7 @@ def grown_trees(
 ) -> tuple[Floats, Ints]:
     """Return the nodes, (n, dim), of the two trees of `connect` and their links, (m, 2), for viewers.
 
-    Raises as :func:`connect`.
+    Errors are those of :func:`connect`.
     """
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
@@ -74,7 +74,7 @@ def grown_trees(
         _, trees = _grown(world, terminals, native_points(cube_points, dim), MOST_MOTIONS)
     vertices, edges, before = [], [], 0
     for nodes, parents in trees.trees:
-        # A root has no parent: a negative number.
+        # The parent of a root is a negative number.
         child = np.flatnonzero(parents >= 0)
         edges.append(before + np.column_stack([child, parents[child]]))
         vertices.append(nodes)
@@ -91,25 +91,24 @@ def shorten(
 ) -> tuple[Floats, int]:
     """Return a path, (p, dim), that is not longer, and the number of motions checked.
 
-    A new motion enters only where it is proved free throughout.  Motions of the given path stay where nothing shorter
-    was found, proved or not: :meth:`CertifiedWorld.motion_valid` says which.  At most `pairs` motions between points
-    along the path are tried, and at most `shortcuts` corners.  InvalidValue if `path` is no such array.
+    A new motion is used only if it is proved free.  Motions for which nothing shorter was found stay, proved or not:
+    :meth:`CertifiedWorld.motion_valid` says which are.  At most `pairs` motions between points along the path are
+    tried, and at most `shortcuts` corners.  Raises InvalidValue if `path` is no such array.
     """
     shares = native_points(share_pairs, min(pairs, PAIRS))
     return planning.shorten(checks_of(world), _as_path(world, path), shares, shortcuts)
 
 
 def smooth(world: ArmWorld, path: npt.ArrayLike, *, batches: int, proved: bool = True) -> tuple[Floats, int]:
-    """Return a smoothed path and the number of motions checked; it is shorter than that of `shorten` for the same
-    checks.
+    """Return a smoothed path and the number of motions checked.
 
-    Waypoints slide along what they touch.  Every motion is proved free, and one or two are bent a little where they are
-    not.  Where that fails, the given path is shortened by straight motions alone, as in `shorten`.  After `batches` of
-    sixteen checks, some of which are kept for the proof, no waypoint slides any more; shortcuts of corners and the
-    proof follow.
+    With the same number of checks it is shorter than the path of `shorten`.  Waypoints slide along obstacles that they
+    touch.  Every motion is proved free; one or two that are not are bent a little.  If that fails, the given path is
+    shortened by straight motions alone, as in `shorten`.  Waypoints stop sliding after `batches` of sixteen checks,
+    some of which are reserved for the proof; shortcuts of corners and the proof follow.
 
-    `proved` says whether the given path is; a single motion has to be.  Where neither the given, nor the shortened, nor
-    the smoothed path is proved, there are no waypoints: (0, dim).  InvalidValue if `path` is no such array.
+    `proved` says whether the given path is proved; a single motion must be.  If neither the given, nor the shortened,
+    nor the smoothed path is proved, there are no waypoints: (0, dim).  Raises InvalidValue if `path` is no such array.
     """
     by = drivers(world.space.dim)
     smoothed, motions = planning.smooth(checks_of(world), _as_path(world, path), by, batches, proved)
@@ -117,11 +116,11 @@ def smooth(world: ArmWorld, path: npt.ArrayLike, *, batches: int, proved: bool =
 
 
 def smooth_with_clearance(world: ArmWorld, path: Floats, *, batches: int) -> tuple[Floats, int]:
-    """Return a path smoothed as by `smooth`, 5 mm away from obstacles where that costs at most 2 % of its length.
+    """Return a path smoothed as by `smooth`, 5 mm away from obstacles if that costs at most 2 % of its length.
 
-    The shortest paths touch what they pass.  So the given path, whose motions are proved, is smoothed in the same world
-    with that much more clearance, where all motions must be proved.  From there it is drawn tighter in this world, to
-    see what the clearance costs.  Where an end is nearer to an obstacle the path is smoothed in this world alone.
+    The shortest paths touch obstacles.  So the given path, whose motions are proved, is first smoothed in a world with
+    5 mm more clearance, where all motions must be proved.  It is then smoothed again in this world, and the two lengths
+    are compared.  If an endpoint is nearer to an obstacle, the path is smoothed in this world alone.
     """
     if len(path) < 3 or world.roomier.fixed_contact is not None:
         return smooth(world, path, batches=batches)
@@ -137,9 +136,9 @@ def improver(
     *,
     is_smoothing: bool,
 ) -> planning.Improver:
-    """Return what makes a path ever shorter: `first` is the path, the row of its goal, and the motions checked for it.
+    """Return an improver, which searches shorter paths: `first` is a path, the row of its goal, and its motion checks.
 
-    Its motions are proved, and so are those of the better paths.  Without smoothing they are as trees find them.
+    The motions of `first` are proved, and so are those of better paths.  Without smoothing, paths are those of trees.
     """
     return planning.Improver(checks_of(world), terminals, by, *first, is_smoothing)
 
@@ -160,7 +159,7 @@ def _as_path(world: ArmWorld, path: npt.ArrayLike) -> Floats:
 def _grown(
     world: ArmWorld, terminals: Floats, samples: planning.Points, most: int
 ) -> tuple[Connection, planning.Trees]:
-    """Return what two trees found, and the trees."""
+    """Return the connection that two trees found, and the trees."""
     order = range(len(terminals) - 1)
     if len(order) > 1:
         # The nearest goals are tried first.

@@ -1,4 +1,4 @@
-"""The frame of all planners: the budget of a query, its world, and its counts."""
+"""Attempt: the budget, world and counts of one query, which all planners share."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ from evenroad.roadmap.search import (
 from evenroad.world import ShowsApart, World
 
 NO_LIMIT = 2**31 - 1
-"""Number of motions that stands for no limit."""
+"""Number of motions that means no limit."""
 
 
 @dataclass(frozen=True, eq=False)
 class Searched:
-    """The states of a graph after a search of it, and the path with its cost, if there is one."""
+    """The states of a graph after a search, and the path with its cost, if there is one."""
 
     states: EdgeStates
     found: Found = NOT_FOUND
@@ -50,12 +50,12 @@ class Searched:
 class Attempt:
     """One search for the path of a problem, by one thread.
 
-    `planner`, `origin`, `rule` and `links` are those of :class:`PlanResult`.  The `connector` smooths paths where there
-    is one and edges have no other `edge_cost` than their lengths.  `grows` says whether the planner draws its points
+    `planner`, `origin`, `rule` and `links` are those of :class:`PlanResult`.  The `connector`, if there is one, smooths
+    paths unless edges have another `edge_cost` than their lengths.  `grows` says whether the planner draws its points
     itself, until the budget is spent.  `checked` configurations were checked outside a graph, and `motions_checked`
-    motions in earlier graphs: both count for the budget.  `spent` says whether it ran out.  `proof_tried` says whether
-    the world has tried to prove that there is no path, or cannot, and `proof_cut` that there was no time for it.
-    `goals` are the rows of the problem's goals, (g,), after `valid_terminals` only the free ones.
+    motions in earlier graphs; both count for the budget.  `spent` says whether it ran out.  `proof_tried` says whether
+    the world has tried to prove that there is no path, or cannot.  `proof_cut` says that there was no time for it.
+    `goals` are the rows of the problem's goals, (g,); after `valid_terminals` only the free ones.
     """
 
     problem: Problem
@@ -106,7 +106,7 @@ class Attempt:
         return free
 
     def valid(self, samples: Floats) -> Bools:
-        """Return which of the samples, (n, dim), are known to be free, as far as time allows: (n,)."""
+        """Return which of the samples, (n, dim), are known to be free, (n,); the deadline may leave some unknown."""
         states = self.states(samples, np.empty((0, 2), dtype=np.int32))
         try:
             with until(self.search_end()):
@@ -118,7 +118,7 @@ class Attempt:
         return free
 
     def candidates(self, rule: Rule, milestones: Floats) -> EdgeStates:
-        """Return the graph of milestones, start and goals: the edges of the rule, and the links besides."""
+        """Return the graph of milestones, start and goals, with the edges of the rule and the links."""
         space, terminals = self.world.space, self.start_and_goals
         configurations = np.concatenate([milestones, terminals])
         n = len(milestones)
@@ -132,13 +132,13 @@ class Attempt:
         return self.states(configurations, edges)
 
     def states(self, configurations: Floats, edges: Ints32, cache: StateCache | None = None) -> EdgeStates:
-        """Return the states of a graph, by default unknown, with the rest of the budget to evaluate more."""
+        """Return the states of a graph, by default unknown; the rest of the budget serves to evaluate them."""
         most = self.problem.budget.motions
         most = None if most is None else most - self.motions_checked
         return EdgeStates(self.world, configurations, edges, self.watch, most, cache)
 
     def search(self, find: Finder, states: EdgeStates, graph: SearchProblem | None = None) -> Searched:
-        """Find a path that the world confirms, over all edges of `states`, or those of a `graph`."""
+        """Find a path that the world confirms, over all edges of `states` or those of a `graph`."""
         space, q, edges = self.world.space, states.configurations, states.edges
         cost, goals = self.edge_cost, len(self.goals)
         with self.watch("search"), until(self.search_end()):
@@ -162,7 +162,7 @@ class Attempt:
     ) -> Connection:
         """Join the start to one of the free goals, or to this one, within the rest of the budget.
 
-        A variant >= 1 searches differently, where the connector `varies`.  It stops after `most` motions.
+        A variant >= 1 searches differently if the connector `varies`.  The search stops after `most` motions.
         """
         start, goals, motions = self.problem.start, self.free_goals, self.problem.budget.motions
         goals = goals if goal is None else goals[goal : goal + 1]
@@ -177,12 +177,12 @@ class Attempt:
         return found if goal is None or found.goal < 0 else replace(found, goal=goal)
 
     def search_end(self) -> Deadline:
-        """Return when a search ends, so that there is time for a proof that there is no path, and for the reasons."""
+        """Return the deadline of a search. It leaves time for a proof that there is no path, and for the reasons."""
         is_proof_due = not (self.grows or self.proof_tried) and isinstance(self.world, ShowsApart)
         return self.time.part(self.began, BEFORE_PROOF if is_proof_due else BEFORE_REASONS)
 
     def take(self, motions: int, seconds: float) -> None:
-        """Count an earlier search: its motions, and its time."""
+        """Count the motions and time of an earlier search."""
         self.motions_checked += motions
         self.watch.seconds["search"] = self.watch.seconds.get("search", 0.0) + seconds
         self.began -= seconds

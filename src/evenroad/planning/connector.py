@@ -1,4 +1,4 @@
-"""Connector: joins a start to a goal without a roadmap, by trees or by a search of a map's cells."""
+"""Connector: a search that joins a start to a goal without a roadmap, by trees or over a map's cells."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.world import World
 
 Smooth: TypeAlias = bool | Literal["quick"]
-"""Whether a path is made shorter once it is found; "quick": by straight shortcuts alone."""
+"""Whether a path is smoothed; "quick": by straight shortcuts alone."""
 
 
 def require_smooth(smooth: object) -> None:
-    """Raise InvalidValue unless this says whether a path is made shorter."""
+    """Raise InvalidValue unless this is a value of `Smooth`."""
     if smooth not in (True, False, "quick"):
         raise InvalidValue(f'smooth must be True, False or "quick", got {shown(smooth)}')
 
 
 @dataclass(frozen=True, eq=False)
 class Connection:
-    """What a connector found between a start and its goals."""
+    """The result of a connector between a start and its goals."""
 
     path: Floats
-    """Waypoints from the start to one goal, (p, dim), every motion free; (0, dim) when there is none."""
+    """Waypoints from the start to one goal, (p, dim), every motion free; (0, dim) without a path."""
     goal: int
     """Row of the goal that the path ends at; -1 without a path."""
     nodes: int
@@ -35,7 +35,7 @@ class Connection:
     motions: int
     """Number of motions checked."""
     spent: bool = False
-    """Whether the time was over before the search was."""
+    """Whether the time ran out before the search ended."""
 
 
 class Search(NamedTuple):
@@ -44,7 +44,7 @@ class Search(NamedTuple):
     most: int
     """Largest number of motions checked."""
     proof: Literal["none", "quick", "any"]
-    """How the world then tries to prove that there is no path."""
+    """Kind of proof that there is no path, which the world tries afterwards."""
 
 
 class Connector(Protocol):
@@ -56,15 +56,16 @@ class Connector(Protocol):
 
     @property
     def varies(self) -> bool:
-        """Whether each variant finds another path; a planner that improves then uses many."""
+        """Whether each variant finds another path, so that a planner that improves uses many."""
 
     def searches(self, dim: int) -> Iterator[Search]:
-        """Yield the searches to make in a space of this dimension, each of another variant where it `varies`."""
+        """Yield the searches to make in a space of this dimension, each of another variant if it `varies`."""
 
     def connect(self, world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int) -> Connection:
-        """Join the start, (dim,), to one of the goals, (g, dim), within the budget; the same variant, the same path.
+        """Join the start, (dim,), to one of the goals, (g, dim), within the budget.
 
-        Where the time of this thread is over it raises BudgetSpent, or returns that it is.
+        The same variant gives the same path.  When the time of this thread is over, it raises BudgetSpent, or returns
+        a connection that is `spent`.
         """
 
     def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:

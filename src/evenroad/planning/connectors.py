@@ -1,4 +1,4 @@
-"""The connector of each kind of world: trees for an arm, a search of cells for a map, plain trees for the rest."""
+"""The connector of each kind of world: trees for an arm, a search of cells for a map, else plain trees."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ if TYPE_CHECKING:
     from evenroad.world.gridmap.disk_world import DiskWorld
 
 RESTART = 4_000
-"""Number of motions of the first search, after which trees begin again, elsewhere: most queries need fewer."""
+"""Number of motions of the first search. Most queries need fewer; after it, other trees begin."""
 LATER = 4
-"""How many times as long later searches last: what is hard once is mostly hard however trees begin."""
+"""Factor of the length of later searches: a query that is hard once mostly stays hard with other trees."""
 BEFORE_QUICK_PROOF, BEFORE_PROOF = 12_000, 60_000
 """Numbers of motions after which the world tries to prove that there is no path.
 
-By then most hard queries are answered, and the proof takes a few times as long as the search so far.
+By then most hard queries have an answer.  The proof takes a few times as long as the search so far.
 """
 FEW_JOINTS = 7
-"""With more joints queries need more motions, about as the square of their number, and a proof takes longer."""
+"""Number of joints above which proofs begin later: motions per query grow with its square, and proofs take longer."""
 BEFORE_PROOF_OF_CELLS = 200_000
-"""The same for a search of cells, which begins again after it."""
+"""Number of motions before the proof of a search of cells, which begins again afterwards."""
 
 SMOOTHING, LONG_SMOOTHING = 500, 2000
-"""Numbers of batches of sixteen checks after which no waypoint of an arm's path slides any more; the second of a path
-that is to be as short as can be."""
+"""Number of batches of sixteen checks after which waypoints of an arm's path stop sliding; `LONG_SMOOTHING` is for the
+shortest paths."""
 
 Smoothing = Literal["none", "quick", "full", "with clearance"]
-"""What compiled code calls the ways to smooth a path."""
+"""Names of the kinds of smoothing in compiled code."""
 
 
 def smoothing_of(smooth: Smooth) -> Smoothing:
-    """Return what compiled code calls this way to smooth a path."""
+    """Return the name of this kind of smoothing in compiled code."""
     return "quick" if smooth == "quick" else "with clearance" if smooth else "none"
 
 
@@ -63,9 +63,9 @@ def drivers_of(dim: int, variant: int) -> Drivers:
 
 
 def restarts(dim: int) -> Iterator[Search]:
-    """Yield searches of trees that begin again and again: the time that one takes varies by far.
+    """Yield searches of trees that restart repeatedly, because the time of one search varies a lot.
 
-    After the first they last 1, 1, 2, 1, 1, 2, 4 ... times as long (M. Luby, A. Sinclair and D. Zuckerman, 1993).
+    Lengths after the first are 1, 1, 2, 1, 1, 2, 4 ... units (M. Luby, A. Sinclair and D. Zuckerman, 1993).
     """
     motions, more = 0, max(1.0, dim / FEW_JOINTS) ** 2
     for number in count():
@@ -89,7 +89,7 @@ class ArmTrees:
     varies: ClassVar[bool] = True
 
     shortest: bool = False
-    """Whether smoothed paths are the shortest, however near to obstacles."""
+    """Whether smoothed paths are the shortest, even if they come near to obstacles."""
 
     def searches(self, dim: int) -> Iterator[Search]:
         """See :func:`restarts`."""
@@ -111,17 +111,17 @@ class ArmTrees:
         search_seconds: float,
         smooth: Smooth,
     ) -> Answer:
-        """Return the smoothed path to one goal, (dim,), or why there is none, of one call of compiled code.
+        """Return the answer of one call of compiled code: the smoothed path to one goal, (dim,), or why there is none.
 
-        Trees grow for that time at most [s].
+        Trees grow for at most `search_seconds`.
         """
         by, smoothing = drivers_of(len(start), variant), smoothing_of(smooth)
         if self.shortest and smoothing == "with clearance":
             smoothing = "full"
         found = answer(world.checker, start, goal, by, most_motions, search_seconds, smoothing)
-        # Where a world is new, one with more room takes as long as a short plan.
+        # In a new world, making the one with more clearance takes as long as a short plan.
         if smoothing == "with clearance" and found.ended == "solved" and found.nodes > 2:
-            # Where there is no time to make the world with more room the path stays as trees found it.
+            # Without time to make the world with more clearance, the path stays as trees found it.
             try:
                 found.smooth_with_clearance(world.checker, world.roomier.checker, by)
             except BudgetSpent:
@@ -131,14 +131,14 @@ class ArmTrees:
     def improver(
         self, world: World, terminals: Floats, first: tuple[Floats, int, int], *, variant: int, is_smoothing: bool
     ) -> Improver:
-        """Return what makes a `first` path shorter: the path, the row of its goal, and the motions checked for it."""
+        """Return the improver of a `first` path: the path, the row of its goal, and the motions checked for it."""
         by = drivers_of(terminals.shape[1], variant)
         return arm_trees.improver(_arm(world), terminals, by, first, is_smoothing=is_smoothing)
 
     def smooth(self, world: World, path: Floats, *, quick: bool = False) -> tuple[Floats, int]:
-        """See :func:`evenroad.planning.arm_trees.smooth_with_clearance`; quickly by its :func:`shorten`."""
+        """See :func:`evenroad.planning.arm_trees.smooth_with_clearance`; if `quick`, its :func:`shorten`."""
         if len(path) == 2:
-            # One motion is as short as can be.
+            # A single motion is the shortest path.
             return path, 0
         if quick:
             return arm_trees.shorten(_arm(world), path)
@@ -155,7 +155,7 @@ class Cells:
     varies: ClassVar[bool] = False
 
     def searches(self, dim: int) -> Iterator[Search]:
-        """Yield the search up to a proof, and all of it."""
+        """Yield the search before a proof, then the whole search."""
         yield Search(BEFORE_PROOF_OF_CELLS, "any")
         yield Search(NO_LIMIT, "none")
 
@@ -164,12 +164,13 @@ class Cells:
     ) -> Connection:
         """Find a path from a free map point, (2,), to the goal, of (g, 2), that is nearest on the lattice.
 
-        It leads over cell centres, and over half cells in narrow passages.  It is found wherever
+        It leads over cell centres, and over half cells in narrow passages.  A path is found wherever
         `DiskWorld.may_connect` holds, except through passages hardly wider than the disk.  At most `most_motions` are
         checked.  There are no variants.
 
-        Goals more than 1000 pixels away are sought over tiles of the map first, and cells are searched around that way
-        alone: a path may be longer than over all cells, by 3 % at most in 59 far queries of four kinds of maps.
+        For goals more than 1000 pixels away, a search over tiles of the map comes first, and only cells near its path
+        are searched.  The result may be longer than over all cells: by at most 3 % in 59 far queries on four kinds of
+        maps.
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
@@ -222,7 +223,7 @@ ARM_TREES, CELLS, PLAIN_TREES = ArmTrees(), Cells(), PlainTrees()
 
 
 def connector_of(world: World) -> Connector | None:
-    """Return the compiled connector for this kind of world, or None where there is none."""
+    """Return the compiled connector for this kind of world, or None if there is none."""
     if isinstance(world, ArmWorld):
         return ARM_TREES
     # Imported late: a plan of an arm has no map.

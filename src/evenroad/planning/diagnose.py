@@ -1,4 +1,4 @@
-"""Why there is no path: whether obstacles enclose the start or a goal, and which."""
+"""Reasons for no path: whether obstacles enclose the start or a goal, and which ones."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from evenroad.points.reversed_halton import cube_points
 from evenroad.world import Explains, World
 
 DIRECTIONS = 128
-"""Number of short motions that are tried from a configuration."""
+"""Number of short motions to try from a configuration."""
 SHORT = 0.1
 """Length of these motions, as a share of the median distance to an even point of the space."""
 ENCLOSED = 0.1
 """Share of free short motions up to which a configuration counts as enclosed."""
 _SHARES = np.linspace(0.05, 1.0, 20)
-"""Shares along a short motion at which something may touch."""
+"""Shares along a short motion at which contacts are tested."""
 
 
 def with_reasons(world: World, result: PlanResult) -> PlanResult:
-    """Return a result without a path whose message also says what encloses the start or the goals.
+    """Return a result without a path, with a message that also names the obstacles that enclose start or goals.
 
-    Nothing is added where there is a path or a proof that there is none, or no time.  It costs some hundred checks for
-    the start and for each goal.
+    The message does not change if there is a path or a proof that there is none, or no time is left.  The reasons cost
+    some hundred checks for the start and for each goal.
     """
     if result.path is not None or result.status not in (Status.NOT_CONNECTED, Status.BUDGET_SPENT):
         return result
@@ -44,7 +44,7 @@ def _with_sentences(world: World, result: PlanResult) -> PlanResult:
     # Imported late: most plans have no constraints.
     from evenroad.constraints.constrained_world import KeptWorld
 
-    # Under constraints most short motions leave them: that says nothing.
+    # Most short motions violate constraints, so they say nothing about obstacles.
     if isinstance(world, KeptWorld):
         return result
     several = len(result.goals) > 1
@@ -59,7 +59,7 @@ def _with_sentences(world: World, result: PlanResult) -> PlanResult:
 
 
 def why_enclosed(world: World, name: str, configuration: Floats) -> str | None:
-    """Return how few short motions leave a free configuration, (dim,), and what blocks them; None where enough do."""
+    """Return how few short motions from a configuration, (dim,), are free, and what blocks them; None if enough are."""
     samples = world.space.from_cube(cube_points(world.space.cube_dim)[:DIRECTIONS])
     here = np.broadcast_to(configuration, samples.shape)
     distances = world.space.distance(here, samples)
@@ -79,7 +79,7 @@ def why_enclosed(world: World, name: str, configuration: Floats) -> str | None:
 
 
 def _what_touches(world: World, a: Floats, b: Floats) -> str:
-    """Return what most of the blocked motions meet first, if the world can explain it."""
+    """Return the contact that most of the blocked motions reach first, if the world can explain it."""
     if not isinstance(world, Explains):
         return ""
     met: Counter[str] = Counter()

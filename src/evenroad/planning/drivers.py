@@ -12,9 +12,9 @@ from evenroad.points.reversed_halton import PAIRS, ball_points, cube_points, sha
 
 @once
 def native_points(points: Callable[[int], Floats], number: int) -> Points:
-    """Return the points that one of these functions gives for a number, as the native kernel takes them.
+    """Return the points of a function for a number, in the form of the native kernel.
 
-    They are checked once, which takes longer than a short plan.
+    They are checked once and cached, because the check takes longer than a short plan.
     """
     return Points(points(number))
 
@@ -26,6 +26,6 @@ def drivers(dim: int) -> Drivers:
 
 
 def drivers_by(samples: Points, dim: int) -> Drivers:
-    """Return the same with other points that trees grow towards."""
+    """Return the same sequences, but with these points that trees grow towards."""
     others = native_points(ball_points, dim), native_points(share_pairs, PAIRS), native_points(sphere_points, dim)
     return Drivers(samples, *others)

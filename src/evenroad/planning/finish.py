@@ -1,4 +1,4 @@
-"""The last checks of a result: a proof once more, the meshes of the robot's file, and what the result is about."""
+"""The last checks of a result: a second proof, the meshes of the robot's file, and notes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def finished(problem: Problem, result: PlanResult) -> PlanResult:
 
 
 def mesh_check(problem: Problem, path: Floats) -> MeshCheck | None:
-    """Check a path, (p, dim), with the meshes of the robot's URDF; None where there are none to check."""
+    """Check a path, (p, dim), with the meshes of the robot's URDF; None if it has none."""
     model = problem.model
     if model is None or model.file is None:
         return None
@@ -47,7 +47,7 @@ def mesh_check(problem: Problem, path: Floats) -> MeshCheck | None:
 
 
 def _with_proof(problem: Problem, result: PlanResult) -> PlanResult:
-    """Return a result of points without a path, with the proof that more points would not find one."""
+    """Return a result without a path, with a proof, if one is found, that more points would not help."""
     if result.status is not Status.NOT_CONNECTED or "points" not in result.counts:
         return result
     try:
@@ -60,7 +60,7 @@ def _with_proof(problem: Problem, result: PlanResult) -> PlanResult:
 
 
 def _with_name(names: tuple[str, ...], result: PlanResult) -> PlanResult:
-    """Return a result whose message has the name of its goal, if that has one."""
+    """Return a result whose message names its goal, if the goal has a name."""
     if result.goal_index is None or not names or not (name := names[result.goal_index]):
         return result
     to = f"to goal {result.goal_index}"
@@ -68,7 +68,7 @@ def _with_name(names: tuple[str, ...], result: PlanResult) -> PlanResult:
 
 
 def _not_tested(problem: Problem) -> str:
-    """Return in words which links the scene allows to touch whole clouds of points; nothing where there is none."""
+    """Return in words which links the scene allows to touch whole point clouds; an empty text if none."""
     world = problem.world
     if not isinstance(world, ArmWorld) or not (pairs := allowed_everywhere(world.robot, world.scene)):
         return ""
@@ -102,7 +102,7 @@ def _certified(problem: Problem, result: PlanResult) -> PlanResult:
 
 
 def _with_meshes(problem: Problem, result: PlanResult) -> PlanResult:
-    """Return a plan with the check of its path by the meshes of the robot's file, where there are some."""
+    """Return a plan after a check of its path with the meshes of the robot's file, if it has any."""
     assert result.path is not None, "only of a path"
     try:
         meshes = mesh_check(problem, result.path)

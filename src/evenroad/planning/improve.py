@@ -1,4 +1,5 @@
-"""Other paths while time is left: below a bound for arms, by other sequences, or by a roadmap on maps."""
+"""Searches for better paths while time is left: below a bound for arms, by a roadmap on maps, else by other sequences.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +25,11 @@ NO_BETTER = 1e-9
 LEAST_MOTIONS, LONGER = 1000, 4
 """Largest number of motions of a round: the larger of a number and a multiple of the first path's motions."""
 _SLICE = 250
-"""Batches of sixteen checks between two looks at the clock: about 1 ms."""
+"""Number of batches of sixteen checks between two checks of the clock: about 1 ms."""
 
 
 def improved(attempt: Attempt, connector: Connector, first: PlanResult, variant: int) -> PlanResult:
-    """Return the best path within the rest of the budget or of its rounds; never a worse one than the first."""
+    """Return the best path within the rest of the budget or its rounds; it is never worse than the first."""
     nodes = first.counts["nodes"]
     stage = Stage(nodes, nodes, attempt.motions_checked, first.cost, attempt.elapsed())
     if isinstance(connector, ArmTrees):
@@ -93,14 +94,14 @@ def _below_bounds(attempt: Attempt, connector: ArmTrees, first: PlanResult, stag
 
 
 def _unless_stopped(best: PlanResult, stopped: bool) -> PlanResult:
-    """Return the best path, or raise it to whom Ctrl-C was meant for."""
+    """Return the best path, or raise it as `Interrupted` after a Ctrl-C."""
     if stopped:
         raise Interrupted(replace(best, message=f"{best.message}; interrupted"))
     return best
 
 
 def _gap(result: PlanResult) -> str:
-    """Return in words how far from the shortest path a path can be."""
+    """Return in words how much longer than the shortest path it can be."""
     try:
         assert result.gap is not None
         return f"at most {100.0 * result.gap:.3g} % longer than the shortest"
@@ -111,7 +112,7 @@ def _gap(result: PlanResult) -> str:
 def _by_rounds(attempt: Attempt, connector: Connector, first: PlanResult, stage: Stage, variant: int) -> PlanResult:
     """Plan repeatedly, each time with another sequence."""
     best, stages, nodes, counts, done, stopped = first, [stage], stage.points, dict(first.counts), 0, False
-    # A round that is much longer than the first costs the time of many others.
+    # A round much longer than the first would take the time of many others.
     most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
     for number in count(1):
         if not _goes_on(attempt, best, number):

@@ -1,4 +1,4 @@
-"""The makers of results: every one is of a problem, and its path leads from the start to a goal."""
+"""The makers of results. Every result belongs to a problem, and its path leads from the start to a goal."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def solution(
 ) -> PlanResult:
     """Return the result with a path to one of the goals, and with the `raw` path before smoothing.
 
-    Costs are lengths by default, and so says the message.
+    Costs are lengths by default; the message says which they are.
     """
     world = problem.world
     cost = path_length(path, world.space) if cost is None else cost
@@ -62,7 +62,7 @@ def solution(
 
 
 def _made(problem: Problem, attributes: dict[str, object]) -> PlanResult:
-    # Written as they are: one field after the other, as a frozen class writes them, would take twice as long.
+    # Set at once. A frozen class sets one field after the other, which takes twice as long.
     result = object.__new__(PlanResult)
     world = problem.world
     vars(result).update(_DEFAULTS, counts={}, timings={}, deviation={}, start=problem.start, goals=problem.goals)
@@ -71,7 +71,7 @@ def _made(problem: Problem, attributes: dict[str, object]) -> PlanResult:
 
 
 def unreached(problem: Problem) -> PlanResult | None:
-    """Return the result where no posture reaches a pose among the goals; else None."""
+    """Return the result if no posture reaches a pose among the goals; else None."""
     given = problem.given
     if given is None or not given.unreached:
         return None
@@ -82,7 +82,7 @@ def unreached(problem: Problem) -> PlanResult | None:
 
 
 def out_of_time(problem: Problem) -> PlanResult:
-    """Return the result of a problem whose time was over before a search."""
+    """Return the result of a problem whose time ran out before a search."""
     within = problem.budget.text(samples=False)
     message = f"no path within {within}: the time was over before a search was; give it more"
     return make_result(problem, Status.BUDGET_SPENT, message)
@@ -91,23 +91,23 @@ def out_of_time(problem: Problem) -> PlanResult:
 def path_message(
     path: Floats, cost: float, goal: int, goals: int, named: str = "length", *, is_cut: bool = False
 ) -> str:
-    """Return what a result says about its path; `is_cut` says that there was no time to smooth it to the end."""
+    """Return a result's message about its path; `is_cut`: there was no time to finish smoothing."""
     to = f" to goal {goal}" if goals > 1 else ""
     cut = ", not smoothed to the end: the time was spent" if is_cut else ""
     return f"path of {named} {cost:.6g} with {len(path)} waypoints{to}{cut}"
 
 
 def proof_of(world: World) -> str:
-    """Return what a check of this world shows: ``exact``, ``certified``, or ``resolution`` if it does not say."""
+    """Return the kind of proof of this world's checks: ``exact``, ``certified`` or, by default, ``resolution``."""
     # `isinstance` would take as long as some checks.
     return str(getattr(world, "proof", "resolution"))
 
 
 def led(world: World, result: PlanResult) -> PlanResult:
-    """Return a result whose paths lead from its start, by its very numbers, to its goal.
+    """Return a result whose paths lead from the exact numbers of its start to its goal.
 
-    Its message says where coordinates that repeat end at other numbers than the goal's.  AssertionError where a path
-    does not lead there, which is a bug of evenroad: no robot must drive such a path.
+    Its message says which repeating coordinates end at other numbers than the goal's.  Raises AssertionError if a path
+    does not lead there.  That is a bug of evenroad, and no robot must drive such a path.
     """
     given, milestones, space = result.path, result.milestone_path, world.space
     wraps = turns(space)

@@ -1,4 +1,4 @@
-"""``er.plan_many``: many queries, each answered as by ``er.plan``, on all processors."""
+"""``er.plan_many``: answers to many queries, the same as of ``er.plan``, on all processors."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from evenroad.roadmap.budget import BEFORE_PROOF, Budget
 from evenroad.world import World
 
 _SLICE = 0.1
-"""Time between two looks at what interrupts, and reports of progress [s]."""
+"""Time between two checks for interrupts, and between reports of progress [s]."""
 
 
 class QueryOptions(TypedDict, total=False):
@@ -53,20 +53,20 @@ def plan_many(
 ) -> PlanResults:
     """Plan many paths, in one world or each in its own.
 
-    Every answer is that of :func:`evenroad.plan` for this world, start and goal with the same options, whatever the
-    number of threads, unless a query's time runs out.  Queries of arms are answered by compiled code, apart from those
-    that are hard or have no path.
+    Every answer is that of :func:`evenroad.plan` for this world, start and goal with the same options, unless a query's
+    time runs out.  The number of threads does not change it.  Compiled code answers queries of arms, except those that
+    are hard or have no path.
 
     Parameters
     ----------
     worlds : World, or sequence of m Worlds
-        Where to plan; all worlds have the same number of coordinates.  A world may be there several times.
+        One world, or one per query; all have the same number of coordinates.  A world may occur several times.
     starts, goals : array_like, shape (m, dim)
-        Configurations.  Row i of both is one query; in which a start or goal is not free has a status that says so.
+        Configurations.  Row i of both is one query.  If its start or goal is not free, its status says so.
     threads : int, optional
         Number of threads, >= 1.  Default: one a processor.
     progress : callable, optional
-        Called with the numbers of queries answered and of all, a few times a second.
+        Called a few times a second with the number of queries answered and the number of all.
     **options
         ``seconds=5``, the largest wall time of each query [s], > 0; ``limits``, its other limits; ``smooth=True``; and
         ``rng=0``, the seed of all queries: as :func:`evenroad.plan` takes them.
@@ -109,7 +109,7 @@ def plan_many(
             progress(done, count)
 
     def query(row: int) -> PlanResult:
-        # Another thread may do that: its time is what the first search has left.
+        # Another thread may continue a query. Its time is the rest after the first search.
         answer = solved.pathless.get(row)
         spent, planner = (0.0, None) if answer is None else (answer.search_seconds, TreesGoOn(answer))
         rest = None if budget.seconds is None else budget.seconds - spent
@@ -127,7 +127,7 @@ def plan_many(
 
 
 def _read_worlds(worlds: object) -> tuple[list[World], Ints | None]:
-    """Return the different worlds, and the number of the world of each query; None where there is one for all."""
+    """Return the different worlds, and the number of the world of each query; None if there is one for all."""
     if is_world(worlds):
         return [worlds], None
     if not isinstance(worlds, Sequence) or isinstance(worlds, str) or not len(worlds):
@@ -164,7 +164,7 @@ def by_compiled_code(
     threads: int,
     report: Callable[[int], None],
 ) -> Part:
-    """Return the answers of queries of arms by one call of compiled code each; starts and goals are (m, 2, dim)."""
+    """Return the answers of queries of arms, each by one call of compiled code; starts and goals are (m, 2, dim)."""
     dim, is_arm = terminals.shape[2], np.array([isinstance(world, ArmWorld) for world in different])
     rows = np.flatnonzero(is_arm[of])
     arms = [world for world in different if isinstance(world, ArmWorld)]
@@ -191,7 +191,7 @@ def by_compiled_code(
 
 
 def _led(different: list[World], of: Ints, waypoints: Floats, counts: Ints, terminals: Floats) -> tuple[Floats, Ints]:
-    """Return paths that begin at the numbers of their starts, as every result does, and how many waypoints each has."""
+    """Return paths that begin at the exact numbers of their starts, and the number of waypoints of each."""
     if not any(world.space.flat.wraps for world in different if isinstance(world, ArmWorld)):
         return waypoints, counts
     paths = [

@@ -31,9 +31,9 @@ class PlanResults:
     status : ndarray, shape (m,)
         Of :class:`evenroad.Status`, which equal their texts: ``results.status == "solved"``.
     cost : float64 ndarray, shape (m,)
-        Lengths of the paths in the metric of the space; NaN where there is none.
+        Lengths of the paths in the metric of the space; NaN without a path.
     waypoints : float64 ndarray, shape (k, dim)
-        Waypoints of all paths, one path after the other.
+        Waypoints of all paths, in the order of queries.
     offsets : int64 ndarray, shape (m + 1,)
         Path i has the waypoints from row ``offsets[i]`` to below ``offsets[i + 1]``.
     seconds : float64 ndarray, shape (m,)
@@ -110,7 +110,7 @@ class PlanResults:
     def clearance(self) -> Floats:
         """Lower bound of each path's distance from all obstacles, (m,), as :attr:`PlanResult.clearance`; else NaN.
 
-        It is computed on first use, on all processors: for arms in some milliseconds a path.
+        It is computed on first use, on all processors; for arms this takes some milliseconds per path.
         """
         clearance = np.full(len(self), np.nan)
 
@@ -125,7 +125,7 @@ class PlanResults:
         return clearance
 
     def to_parquet(self, file: str | os.PathLike[str]) -> None:
-        """Write one row a query: ``status``, ``cost``, ``seconds``, ``message``, and ``path``, a list of lists.
+        """Write one row per query: ``status``, ``cost``, ``seconds``, ``message``, and ``path``, a list of lists.
 
         Parameters
         ----------
@@ -160,9 +160,9 @@ class PlanResults:
 
 
 class Part(NamedTuple):
-    """Some queries that have paths: their rows, how many waypoints each path has, the waypoints, lengths and times.
+    """Queries with paths: their rows, the number of waypoints of each path, the waypoints, lengths and times.
 
-    Beside them are the answers without a path, where planning goes on: row -> answer.
+    `pathless`, row -> answer, are queries without a path, for which planning continues.
     """
 
     rows: Ints

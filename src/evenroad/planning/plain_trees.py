@@ -1,7 +1,7 @@
 """RRT-Connect for any world: two trees that check batches of motions (Kuffner and LaValle 2000).
 
-Each step takes the next batch of an even sequence.  Every sample is joined to its nearest node of the tree whose turn
-it is, by at most one step, and the whole batch is checked at once.  The other tree then tries to reach each new node.
+The trees take turns.  Each step takes the next batch of an even sequence, joins every sample to its nearest node of the
+tree by at most one step, and checks the whole batch at once.  The other tree then tries to reach each new node.
 Trees of robots are compiled, see `arm_trees`; these are for worlds in Python.
 """
 
@@ -17,17 +17,17 @@ from evenroad.points.reversed_halton import cube_points, shifted_cube_points
 from evenroad.world import World
 
 BATCH = 16
-"""Number of samples per step of a tree: a world in Python checks a batch in little more time than one motion."""
+"""Number of samples per step of a tree. A world in Python checks a batch in little more time than one motion."""
 STEP = 0.2
 """Longest motion of a tree, as a share of the median distance between two samples."""
 FIRST, MOST_SAMPLES = 1 << 10, 1 << 18
-"""Numbers of samples that are drawn first and at most; they double when used up, after the last one the trees stop."""
+"""Number of samples that are drawn first, and largest number. It doubles when they are used up, until trees stop."""
 MOST_STEPS = 64
 """Largest number of steps of a tree towards a new node of the other one."""
 MOST_SHIFTS = 128
 """Number of shifts of an even sequence in one variant: those of `MOST_SAMPLES`."""
 NEAR = 8
-"""Number of goals, the nearest ones, that are walked to under constraints before trees grow."""
+"""Number of nearest goals that walks under constraints try to reach before trees grow."""
 
 
 class _Tree:
@@ -37,18 +37,18 @@ class _Tree:
         self.nodes, self.parents = roots.copy(), np.full(len(roots), -1)
 
     def nearest(self, world: World, q: Floats) -> Ints:
-        """Return the node nearest to each configuration, (n, dim) -> (n,); of equals the earlier one."""
+        """Return the node nearest to each configuration, (n, dim) -> (n,); ties go to the earlier one."""
         pairs = np.repeat(q, len(self.nodes), axis=0), np.tile(self.nodes, (len(q), 1))
         nearest: Ints = world.space.distance(*pairs).reshape(len(q), -1).argmin(axis=1)
         return nearest
 
     def add(self, nodes: Floats, parents: Ints) -> None:
-        """Add nodes, (n, dim), below these parents, (n,)."""
+        """Add nodes, (n, dim), with these parents, (n,)."""
         self.nodes = np.concatenate([self.nodes, nodes])
         self.parents = np.concatenate([self.parents, parents])
 
     def branch(self, node: int) -> list[int]:
-        """Return the numbers of the nodes from one to its root."""
+        """Return the numbers of the nodes from a node to its root."""
         nodes = [node]
         while self.parents[nodes[-1]] >= 0:
             nodes.append(int(self.parents[nodes[-1]]))
@@ -56,7 +56,7 @@ class _Tree:
 
 
 def grow_trees(world: World, start: Floats, goals: Floats, *, variant: int, most_motions: int) -> Connection:
-    """Join a start, (dim,), to one of the goals, (g, dim), that are free; each variant scrambles the sequence anew."""
+    """Join a start, (dim,), to one of the free goals, (g, dim); each variant scrambles the sequence differently."""
     both = _Both([_Tree(start[np.newaxis]), _Tree(np.asarray(goals, dtype=np.float64))])
     path, spent = np.empty((0, len(start))), False
     try:
@@ -74,7 +74,7 @@ class _Both:
         self.trees, self.motions = trees, 0
 
     def joined(self, world: World, variant: int, most_motions: int) -> Floats:
-        """Grow the trees until they meet; return the path, (p, dim), without waypoints where they do not."""
+        """Grow the trees until they meet; return the path, (p, dim), without waypoints if they do not."""
         trees, turn, step = self.trees, 0, np.inf
         # The straight motions to the goals come first: many queries need no trees.
         ahead, samples = trees[1].nodes.copy(), trees[0].nodes[:0]
@@ -88,7 +88,7 @@ class _Both:
             fresh = self._extend(world, own, targets, np.inf if first < 0 else step)
             walks = [(turn, fresh, other.nearest(world, own.nodes[fresh]))] if len(fresh) else []
             if first < 0 and not len(fresh) and isinstance(world, KeptWorld):
-                # A straight motion may leave a constraint where a walk along it leads on, from one end or the other.
+                # A straight motion may violate a constraint where a walk along it succeeds, from one end or the other.
                 step = _step(world, _samples(world, FIRST, variant))
                 away = world.space.distance(np.broadcast_to(trees[0].nodes[:1], ahead.shape), ahead)
                 near = np.argsort(away, kind="stable")[:NEAR]
@@ -114,7 +114,7 @@ class _Both:
         return np.arange(begin, len(own.nodes))
 
     def _path(self, of: int, node: int, reached: int) -> Floats:
-        """Return the path through a node of a tree and the node of the other one that is there, too."""
+        """Return the path through a node of one tree and the node of the other one at the same configuration."""
         branches = self.trees[of].branch(node)[::-1], self.trees[1 - of].branch(reached)
         path = np.concatenate([self.trees[of].nodes[branches[0]], self.trees[1 - of].nodes[branches[1]]])
         path = path if of == 0 else path[::-1]
@@ -123,9 +123,9 @@ class _Both:
 
 
 def _samples(world: World, n: int, variant: int) -> Floats:
-    """Return n configurations, (n, dim); fewer of them are the first of more."""
+    """Return n configurations, (n, dim); the first of them do not depend on n."""
     if isinstance(world, KeptWorld):
-        # Nodes are projected, not what they grow towards.  Such plans are short: a sampler's import takes longer.
+        # Nodes are projected, but not samples.  Such plans are short, and importing a sampler would take longer.
         space = world.world.space
         blocks = range(MOST_SHIFTS * variant, MOST_SHIFTS * variant - (-n // len(cube_points(space.cube_dim))))
         shifted = [shifted_cube_points(space.cube_dim, block) for block in blocks]
@@ -143,8 +143,8 @@ def _step(world: World, samples: Floats) -> float:
 def _reach(world: World, tree: _Tree, targets: Floats, nodes: Ints, step: float, most: int) -> tuple[int, int, int]:
     """Grow a tree from nodes, (k,), towards configurations, (k, dim), all by a step in turn, until one is reached.
 
-    Return the row of that configuration, and its node, or -1 twice; and the number of checks.  Those that a step does
-    not bring nearer are given up.
+    Return the row of that configuration and its node, or -1 twice, and the number of checks.  Targets that a step does
+    not come nearer to are dropped.
     """
     node, rows, checked = nodes.copy(), np.arange(len(targets)), 0
     for _ in range(MOST_STEPS):

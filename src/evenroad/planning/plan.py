@@ -1,4 +1,4 @@
-"""``er.plan``: from a world, a start and a goal, as values, names or files, to a path, or why there is none."""
+"""``er.plan``: a path in a world from a start to a goal, given as values, names or files, or why there is none."""
 
 from __future__ import annotations
 
@@ -58,51 +58,51 @@ def plan(
     Parameters
     ----------
     world : World, GridMap, Scene, str or path-like
-        Where to plan.  A map, or its file, goes with ``radius=``; a scene, its file or the name of a shipped one, with
-        ``robot=``.
+        The world to plan in.  A map, or its file, goes with ``radius=``; a scene, its file or the name of a shipped
+        one, with ``robot=``.
     start : array_like, shape (dim,), str or mapping
-        A configuration in the units of the world's space.  Of an arm also joint -> value, or a text: the name of a
-        state, ``0,-1.57,...`` or ``name=value``.  A value may exceed its joint's limits by 1e-5, as five printed
-        decimals do, and stays what it is.
+        A configuration in the units of the world's space.  For an arm also joint -> value, or a text: the name of a
+        state, ``0,-1.57,...`` or ``name=value``.  A value may exceed its joint's limits by 1e-5, the rounding of five
+        printed decimals, and is not changed.
     goal : as `start`, Pose, PoseGoal, or a sequence of such
-        A pose stands for all configurations found that reach it; its (4, 4) matrix as an array is one, too, unless the
-        arm has four joints.  Of several goals the path ends at the nearest if it
-        is reached soon; along a roadmap, or with ``improve``, at the cheapest.
+        A pose stands for all configurations found that reach it.  A (4, 4) array is the matrix of a pose, unless the
+        arm has four joints.  With several goals the path ends at the nearest one if it is reached soon; along a
+        roadmap, or with ``improve``, at the cheapest.
     planner : Planner, Roadmap, PointSet, str or path-like, optional
-        Such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``"fmt"``.  Default: trees for an arm, a search of cells
-        for a disk on a map, points that grow for any other world.  A PointSet stands for ``er.PRM(points)``,
+        A planner, such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``"fmt"``.  Default: trees for an arm, a search of
+        cells for a disk on a map, a growing roadmap for any other world.  A PointSet stands for ``er.PRM(points)``;
         a Roadmap, or its file, for that roadmap within the world.
     seconds : float, optional
-        Largest wall time, > 0: the call ends by then, with what has been found.  What the world is made of is read and
-        packed before the time begins.  Default: 5; for planners on points that are drawn beforehand 60.
+        Largest wall time, > 0.  The call ends by then and returns what it has found.  Reading and packing the world is
+        not included.  Default: 5; for planners on points that are drawn beforehand 60.
     limits : mapping or Budget, optional
         Other limits: ``motions``, ``samples``, ``rounds``; integers >= 1.  With these the same call gives the same
-        answer on every machine, unless the time runs out first.  A :class:`evenroad.roadmap.Budget` says the time, too.
+        answer on every machine, unless the time runs out first.  A :class:`evenroad.roadmap.Budget` includes the time.
     smooth : bool or "quick"
-        Whether the path is made shorter once it is found.  Waypoints of an arm slide along what they touch, 5 mm off
-        where that costs at most 2 % of the length; "quick": the path is cut short by straight motions alone, in less
-        time.
+        Whether the path is smoothed.  An arm's waypoints slide along obstacles, with a clearance of 5 mm if that costs
+        at most 2 % of the length.  "quick": only straight shortcuts, in less time.
     rng : int, SeedSequence or Generator
-        Seed of what the planner draws; the same seed gives the same path.
+        Seed of the planner; the same seed gives the same path.
     certified : bool
-        Check once more that every motion is proved free throughout.  Where one is not, the status is
-        ``not_certified``, and the message says which.
+        Check once more that every motion is proved free.  If one is not, the status is ``not_certified``, and the
+        message says which.
     constraints : Constraint, optional
-        Of an arm, such as ``er.CartesianLine(0.1)`` or ``er.constraints.KeepUpright(0.1)``; ``one & other`` holds both.
+        Constraints of an arm, such as ``er.CartesianLine(0.1)`` or ``er.constraints.KeepUpright(0.1)``;
+        ``one & other`` means both.
     degrees : bool
         Angles in texts are degrees.
     tip, frame : str
-        The link that goal poses place, and the link in whose frame; default: the last link, and the root.
+        The link that goal poses refer to, and the link whose frame they are in; default: the last link, and the root.
     **of_world
-        ``radius``, ``clearance``, ``unknown_is_free``, ``rules`` of a map; ``robot``, ``clearance``, ``resolution``,
-        and what :func:`evenroad.load_robot` takes, of a scene.
+        For a map: ``radius``, ``clearance``, ``unknown_is_free``, ``rules``.  For a scene: ``robot``, ``clearance``,
+        ``resolution``, and the keywords of :func:`evenroad.load_robot`.
 
     Returns
     -------
     PlanResult
-        Without a path, ``status`` and ``message`` say why.  ``mesh_collision`` is the status of a path that is free for
-        the bodies it was planned with, but not for the meshes of the arm's file; ``goal_unreachable`` that of a pose
-        that no configuration was found for.
+        Without a path, ``status`` and ``message`` say why.  ``mesh_collision``: the path is free for the bodies it was
+        planned with, but not for the meshes of the arm's file.  ``goal_unreachable``: no configuration was found for a
+        pose.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def plan(
 
 
 def solve(problem: Problem, planner: Planner | Roadmap | None = None) -> PlanResult:
-    """Return the finished result of a problem, by a planner or its world's default, in the time of this thread."""
+    """Return the finished result of a problem, by a planner or its world's default, before this thread's deadline."""
     stopped = False
 
     def plan_once(part: Problem) -> PlanResult:

@@ -1,4 +1,4 @@
-"""Problem and Planner: what is to be solved, and who solves it."""
+"""Problem, a query that planners solve, and Planner, their interface."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _USUAL = Budget()
 
 
 class Wanted(TypedDict, total=False):
-    """What is wanted of a path: attributes of a :class:`Problem`."""
+    """Keywords about the path of a :class:`Problem`."""
 
     budget: Budget
     smooth: Smooth
@@ -35,28 +35,28 @@ class Wanted(TypedDict, total=False):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Find a path in a world from a start to one of some goals.
+    """A query: a path in a world from a start to one of several goals.
 
     Attributes
     ----------
     world : World
-        Checks configurations and motions.
+        The world, which checks configurations and motions.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
         Configurations; they become read-only.
     budget : Budget
         Limits of the search.
     smooth : bool or "quick"
-        Whether the path is made shorter once it is found; "quick": by straight shortcuts alone.
+        Whether the path is smoothed; "quick": by straight shortcuts alone.
     rng : int, SeedSequence or Generator
-        Seed of what a planner draws.
+        Seed of the planner.
     certified : bool
         Whether every motion is to be proved free; :func:`evenroad.plan` checks it once more.
     constraints : Constraint, optional
-        What the path of an arm keeps; :func:`evenroad.plan` divides such a problem into others without constraints.
+        Constraints of an arm's path; :func:`evenroad.plan` divides such a problem into others without constraints.
     given : Goals, optional
-        What the goals of an arm were made of, where that is more than one configuration: names, and poses.
+        Names and poses of an arm's goals, if these were given as more than configurations.
     model : RobotModel, optional
-        How the arm was read from its file.
+        The record of the arm's file.
     """
 
     world: World
@@ -85,7 +85,7 @@ class Problem:
 
     @property
     def arm(self) -> ArmWorld:
-        """The world, which is that of an arm."""
+        """The world of an arm."""
         assert isinstance(self.world, ArmWorld), "only of an arm's problem"
         return self.world
 
@@ -96,27 +96,27 @@ class Problem:
 
     @property
     def goal_names(self) -> tuple[str, ...]:
-        """The texts by which the caller named the goals, or nothing."""
+        """The caller's texts for the goals, or nothing."""
         return () if self.given is None else self.given.names
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was read otherwise than the files say, and what seems unusual in them."""
+        """Notes about what was changed in reading the files, and what seems unusual in them."""
         of_robot = () if self.model is None else self.model.notes
         return of_robot + tuple(getattr(self.world, "notes", ()))
 
     @property
     def tip(self) -> str:
-        """The link that goal poses place, or nothing."""
+        """The link that goal poses refer to, or nothing."""
         return self.given.poses[0][0].tip if self.given is not None and self.given.poses else ""
 
 
 @runtime_checkable
 class Planner(Protocol):
-    """Solves problems; a frozen value that says how."""
+    """A frozen value that solves problems."""
 
     def solve(self, problem: Problem) -> PlanResult:
-        """Return a path, or why there is none; after a Ctrl-C raise Interrupted, if there is a path."""
+        """Return a path, or why there is none; after a Ctrl-C raise Interrupted if there is a path."""
 
 
 class Interrupted(KeyboardInterrupt):

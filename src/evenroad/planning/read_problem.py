@@ -1,4 +1,4 @@
-"""Reading a problem from what ``er.plan`` is given: worlds, maps, scenes and robots, as values, names or files."""
+"""Readers of the arguments of ``er.plan``: worlds, maps, scenes and robots, as values, names or files."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 _ANY_PATH: Wanted = {}
 _NAMED = str, Pose, PoseGoal
-"""Types of goals that have a text."""
+"""Types of goals that can be shown as text."""
 OF_MAP = ("radius", "clearance", "unknown_is_free", "rules")
 OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
@@ -54,7 +54,7 @@ def read_problem(
                 _ = world.checker
         return problem_in(world, start, goal, reading, wanted)
     if isinstance(world, str | os.PathLike):
-        # The radius distinguishes a map from a scene, whose names and suffixes are the same.
+        # Names and suffixes of maps and scenes are the same, so the radius decides.
         if "radius" in of_world:
             # Imported late: a plan of an arm reads no image.
             from evenroad.world import load_map
@@ -113,7 +113,7 @@ def _require_known(given: Mapping[str, object], known: Sequence[str], what: str)
 
 
 RESOLUTION = 0.05
-"""Largest step of a motion check when none is given [rad]."""
+"""Default of the largest step of a motion check [rad]."""
 
 
 def arm_problem(
@@ -151,7 +151,7 @@ def arm_problem(
         first = as_configuration(robot, start, scene, name="start", degrees=reading.degrees)
         _refuse_what_is_none(robot, scene, goals, reading)
         robot = standing_at(robot, first)
-        # Where a goal pose is not reached, contacts near the endpoints stay allowed.
+        # If no posture reaches a goal pose, contacts near the endpoints stay allowed.
         world = ArmWorld(robot, open_everywhere(scene), resolution=resolution, clearance=clearance)
         _ = world.checker
     given = _goals_in(world, first, goals, reading)
@@ -175,7 +175,7 @@ def problem_in(
     first = as_configuration(robot, start, scene, name="start", degrees=reading.degrees)
     world = reaching(world, first)
     if len(goals) == 1 and not isinstance(goals[0], _NAMED):
-        # Most goals: numbers have no name, and no other posture is meant.
+        # Most goals are numbers: they have no name, and mean only this posture.
         last = as_configuration(robot, goals[0], scene, name="goal")
         return Problem(world, first, last.reshape(1, -1), **wanted)
     given = _goals_in(world, first, goals, reading)
@@ -183,7 +183,7 @@ def problem_in(
 
 
 def reaching(world: ArmWorld, start: Floats) -> ArmWorld:
-    """Return a world whose arm can stand at the start, (dim,), beyond soft limits: itself where it does not."""
+    """Return a world that allows the start, (dim,), beyond soft limits; the same world if it is within them."""
     robot = standing_at(world.robot, start)
     return world if robot is world.robot else replace(world, robot=robot)
 
@@ -196,7 +196,7 @@ def _goals_in(world: ArmWorld, start: Floats, goals: list[Goal], reading: Readin
 
 
 def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading: Reading) -> None:
-    """Refuse values that are neither a configuration nor a pose, before a world is compiled."""
+    """Refuse values that are neither a configuration nor a pose, before a world is made."""
     for target in goals:
         if not isinstance(target, Pose | PoseGoal):
             as_configuration(robot, target, scene, name="goal", degrees=reading.degrees)
@@ -204,7 +204,7 @@ def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading:
 
 
 def _goal_list(goal: Goal | Sequence[Goal], dim: int) -> list[Goal]:
-    """Return the goals one by one; of an arm of other than four joints a (4, 4) array is the matrix of a pose."""
+    """Return a list of the goals; a (4, 4) array is the matrix of a pose, unless the arm has four joints."""
     if isinstance(goal, np.ndarray):
         if goal.shape == (4, 4) and dim != 4:
             return [Pose.from_matrix(goal)]

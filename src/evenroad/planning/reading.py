@@ -1,4 +1,4 @@
-"""How configurations and poses are given, and how they are read."""
+"""Options for reading configurations and poses."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ Goal = ConfigurationLike | Pose | PoseGoal
 
 @dataclass(frozen=True)
 class Reading:
-    """How texts and poses are read.
+    """Options for reading texts and poses.
 
     Attributes
     ----------
     degrees : bool
         Angles in texts are degrees.
     tip, frame : str
-        The link that goal poses place, and the link in whose frame.  Default: the last link, and the root.
+        The link that goal poses refer to, and the link whose frame they are in.  Default: the last link, and the root.
     held : mapping, optional
         Values of joints that are not planned for, joint -> value [rad or m].
     """

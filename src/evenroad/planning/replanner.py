@@ -1,4 +1,4 @@
-"""Replanner: a path to one goal, again and again, from where the arm is and among what is there now."""
+"""Replanner: paths to one goal that are updated as the arm and the obstacles move."""
 
 from __future__ import annotations
 
@@ -34,33 +34,33 @@ from evenroad.scenes.scene import Scene
 from evenroad.scenes.states import as_configuration
 
 VARIANTS = 8
-"""Number of even sequences that updates without a path take in turn."""
+"""Number of even sequences that updates without a path use in turn."""
 SHORTCUTS = 8
-"""Number of pairs of places along a path that each update tries for a shorter way: the next one tries others."""
+"""Number of pairs of positions along a path that each update tries to join; the next update tries others."""
 
 
 @explains_calls
 class Replanner:
-    """A path of an arm to its goal that is kept while it is free, and planned anew where it is not.
+    """A path of an arm to its goal that is kept while it is free, and planned again when it is not.
 
-    An update takes where the arm is, and what has changed in the scene.  The rest of the last path is proved free in
-    the scene as it is now, and cut short where that has become possible.  Where it is not free, a new path is
-    planned from where the arm is.  So no path is handed out that the scene does not allow.
+    An update takes the arm's configuration and the changes of the scene.  It proves the rest of the last path free in
+    the current scene, and shortens it where possible.  If the rest is not free, it plans a new path from the arm's
+    configuration.  So every returned path is free in the current scene.
 
     Parameters
     ----------
     world : ArmWorld
         The arm and its scene at the beginning.
     goal : as of :func:`evenroad.plan`
-        A configuration, a named state, a pose, or several of them.  Of a pose all postures count that are free in the
+        A configuration, a named state, a pose, or several of them.  A pose stands for all postures that are free in the
         scene of the update.
     motions : int
-        Largest number of motions that trees check in one update, >= 1.  The next update without a path grows other
-        trees.
+        Largest number of motions that trees check in one update, >= 1.  If no path is found, the next update grows
+        other trees.
     rng : int, SeedSequence or Generator
-        Seed of what drives the trees.
+        Seed of the sequences that drive the trees.
     tip, frame : str
-        The link that goal poses place, and the link in whose frame; default: the last link, and the root.
+        The link that goal poses refer to, and the link whose frame they are in; default: the last link, and the root.
 
     Attributes
     ----------
@@ -72,11 +72,11 @@ class Replanner:
     Raises
     ------
     InvalidValue, UnknownName
-        If the world is none of an arm, or the goal is not one of these.
+        If the world is not that of an arm, or the goal is not one of these.
 
     Notes
     -----
-    Updates of several threads are answered one after the other.  The same updates give the same paths.
+    Updates from several threads are answered in sequence.  The same updates give the same paths.
 
     Examples
     --------
@@ -104,13 +104,13 @@ class Replanner:
         self.path: Floats | None = None
         self._motions = require_count("motions", motions)
         middle = world.space.from_cube(np.full((1, world.dim), 0.5))[0]
-        # In an empty scene: a posture that is blocked now may be free at a later update.
+        # Read in an empty scene, because a posture that is blocked now may be free at a later update.
         empty = replace(world.scene, obstacles=(), allowed=frozenset())
         self._problem = problem_in(world.within(empty), middle, goal, Reading(tip=tip, frame=frame))
         variant = variant_of(rng)
         self._variant, self._drivers = variant, [drivers_of(world.dim, variant)]
         self._last: tuple[Floats, int] | None = None
-        """The last path and the row of its goal: what blocks it now may leave it again."""
+        """The last path and the row of its goal. It is kept when blocked, because an obstacle may leave it again."""
         self._failures = self._cut = 0
         self._lock = OwnLock()
 
@@ -126,31 +126,31 @@ class Replanner:
         added: Bodies = (),
         removed: str | Sequence[str] = (),
     ) -> PlanResult:
-        """Return a path from where the arm is, free in the scene as it is now, or why there is none.
+        """Return a path from the arm's configuration, free in the current scene, or why there is none.
 
         Parameters
         ----------
         q : array_like, shape (dim,), mapping or str
-            Where the arm is, as a start of :func:`evenroad.plan`.
+            Configuration of the arm, as a start of :func:`evenroad.plan`.
         scene : Scene, optional
-            The scene as it is now, in place of that of the last update.
+            The current scene, in place of that of the last update.
         moved : mapping of str to Pose, optional
-            Obstacle -> its pose now.
+            Name of an obstacle -> its current pose.
         added : sequence of Shape or Obstacle
             New obstacles.
         removed : sequence of str
-            Obstacles that are gone; they leave before others are added or moved.
+            Names of obstacles that are gone; they are removed before others are added or moved.
 
         Returns
         -------
         PlanResult
-            Its `planner` says whether the path is ``kept`` or from new ``trees``.  Without a path the arm should stop:
-            the status is ``budget_spent`` where the trees of the next update may find one.
+            Its `planner` says whether the path is ``kept`` or from new ``trees``.  Without a path the arm should stop.
+            The status is ``budget_spent`` if the trees of the next update may find one.
 
         Raises
         ------
         InvalidValue, UnknownName
-            If an argument is not one of these; nothing has changed then.
+            If an argument is not one of these; the replanner does not change then.
 
         Examples
         --------
@@ -175,7 +175,7 @@ class Replanner:
             return result
 
     def _kept(self, start: Floats, began: float) -> PlanResult | None:
-        """Return what is left of the last path from where the arm is, made shorter, or None where it is not free."""
+        """Return the rest of the last path from the arm's configuration, shortened, or None if it is not free."""
         if self._last is None:
             return None
         path, goal = self._last
@@ -188,14 +188,14 @@ class Replanner:
         return self._result(start, rest, goal, "kept", {"shortcut_motions": more}, began)
 
     def _shortened(self, path: Floats) -> tuple[Floats, int]:
-        """Return a path that is not longer, and the number of motions checked; each update cuts other corners."""
+        """Return a path that is not longer, and the number of motions checked; each update tries other shortcuts."""
         if len(path) == 2:
             return path, 0
         self._cut = (self._cut + 1) % len(_pairs())
         return shorten(checks_of(self.world), path, _pairs()[self._cut], SHORTCUTS)
 
     def _planned(self, start: Floats, began: float) -> PlanResult:
-        """Return a new path from where the arm is, to the nearest of the goals that was not tried just before."""
+        """Return a new path from the arm's configuration to the nearest goal that was not tried just before."""
         world, problem = self.world, replace(self._problem, world=self.world, start=start)
         if (result := unreached(problem)) is not None:
             return result
@@ -239,16 +239,16 @@ class Replanner:
 
 @once
 def _pairs() -> tuple[Points, ...]:
-    """Return the pairs of places that updates try to join, some for each."""
+    """Return the pairs of positions that updates try to join, a few for each."""
     pairs = share_pairs(PAIRS)
     return tuple(Points(pairs[i : i + SHORTCUTS]) for i in range(0, len(pairs), SHORTCUTS))
 
 
 def paths_on(world: ArmWorld, q: Floats, path: Floats) -> list[Floats]:
-    """Return paths from a configuration, (dim,), on to the end of a path, (p, dim), best first.
+    """Return paths from a configuration, (dim,), to the end of a path, (p, dim), best first.
 
-    The first leads on to the next waypoint; where the configuration is beside the path, the second leads to the nearest
-    place of the path before.
+    The first leads to the next waypoint.  If the configuration is beside the path, the second leads to the nearest
+    position on the path before.
     """
     flat = world.space.flat
     a, along = path[:-1], flat.difference(path[:-1], path[1:])

@@ -60,9 +60,9 @@ class SearchedGraph:
 class Stage:
     """One stage of a plan that grows, or a round of one that improves in which a better path was found.
 
-    `points` is the number of points so far, of which `valid` are; of a round, the nodes of all trees so far, all valid.
-    `edges_checked` motions were checked up to its end, `seconds` after the query began (not compared).  `cost` is that
-    of this stage's path along the roadmap, or of a round's path after shortcutting; None without a path.
+    `points` is the number of points so far, and `valid` the number of valid ones; in a round these are the nodes of all
+    trees.  `edges_checked` motions were checked up to its end, `seconds` after the query began (not compared).  `cost`
+    is that of the stage's path along the roadmap, or of a round's path after shortcutting; None without a path.
     """
 
     points: int
@@ -80,8 +80,8 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``goal_invalid``: all goals are.  ``start_outside_limits``, ``goal_outside_limits``: outside of the space, by a
-        joint's limits or a map's; the message says whose.  ``goal_unreachable``: no configuration was found for a pose.
+        ``goal_invalid``: all goals are.  ``start_outside_limits``, ``goal_outside_limits``: outside of the limits of a
+        joint or a map; the message says which.  ``goal_unreachable``: no configuration was found for a pose.
         ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.  ``not_certified``: a
         proof was requested, and the path is free only at states tested.
     message : str
@@ -91,49 +91,48 @@ class PlanResult:
     goal_index : int or None
         Row of the goal that the path ends at; None without a path.
     path : ndarray, shape (p, dim), or None
-        Waypoints after shortcutting, from start to goal, in the units of the space.  Joints that turn endlessly begin
-        at the numbers of the start, and go on from there; where they end at another turn than the goal's, the message
-        says so.
+        Waypoints after shortcutting, from start to goal, in the units of the space.  Continuous joints begin at the
+        numbers of the start, and change without jumps; if they end at another turn than the goal's, the message says
+        so.
     milestone_path : ndarray, shape (q, dim), or None
-        The path along the roadmap, before shortcutting; along a robot's own, motions may be free at states alone.
+        The path before shortcutting, such as the path along the roadmap.
     proof : str or None
-        What is shown of the motions of `path`: ``exact`` (no gap, up to rounding), ``certified`` (no gap), or
+        Kind of proof for the motions of `path`: ``exact`` (no gap, up to rounding), ``certified`` (no gap), or
         ``resolution`` (free at states close together); None without a path.
     cost, milestone_cost : float or None
         Costs of the two paths: lengths in the metric of the space, or the user's edge costs.
     counts : dict of str to int
         ``points`` (N), ``valid`` (milestones known to be valid), ``configurations_checked`` (without those inside
-        of motions), ``edges_considered``, ``edges_checked``, ``edges_free`` (known to be),
-        ``shortcut_motions``, ``nodes`` (of trees), ``rounds`` (of a planner that improves) and, when not connected,
-        ``start_component`` and ``goal_component`` (milestones that start and goals can reach over what is not known
-        to be blocked).
+        motions), ``edges_considered``, ``edges_checked``, ``edges_free`` (known to be free),
+        ``shortcut_motions``, ``nodes`` (of trees), ``rounds`` (of a planner that improves).  If not connected, also
+        ``start_component`` and ``goal_component``: the numbers of milestones that start and goals can reach over nodes
+        and edges that are not known to be blocked.
     timings : dict of str to float
         Wall time of each phase [s]: ``validity``, ``neighbours``, ``motions``, ``search``, ``shortcut``.
     origin : Origin
-        Where the points came from.
+        Origin of the points.
     rule : str
         The connection rule, by name.
     links : int or None
         Number of links of the query; see :func:`plan`.
     planner : str
-        Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest); ``prm anytime``,
-        ``fmt*``; or the world itself, with ``trees`` or ``cells``.
+        Name of the search: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), ``prm anytime``,
+        ``fmt*``, ``trees`` or ``cells``.
     deviation : dict of str to float
         Largest deviations of a path under tip constraints, on fine grids: ``line_m`` and ``line_rad`` from the
         straight lines, ``tilt_rad`` from upright.
     stages : tuple of Stage
-        Stages of a plan that grows or improves, its cost over time; empty for all others.
+        Stages of a plan that grows or improves, with costs over time; else empty.
     certificate : Certificate or None
-        What the roadmap guarantees, if :func:`plan` was called with ``certify``.  Without a path, and if it is
-        `complete`, no path has a clearance of its `dispersion`.
+        Guarantees of the roadmap, if :func:`plan` was called with ``certify``.  If it is `complete` and there is no
+        path, no path has a clearance of its `dispersion`.
     roadmap : SearchedGraph or None
         The searched graph; None if start or goal is invalid, and for a reused roadmap.
     meshes : MeshCheck or None
-        What the meshes of the arm's file say about the path, where it has some; not in a plan that was read from a
-        file.
+        Result of the check with the meshes of the arm's file, if it has any; not in a plan that was read from a file.
     notes : tuple of str
-        What was read of the robot or the map otherwise than its files may mean it, and what seems unusual in it or its
-        scene, one line each.
+        Notes, one line each, about what was changed in reading the robot or map, and what seems unusual in them or in
+        the scene.
     world : World or None
         World of the query; None in a plan that was read from a file.
 
@@ -172,11 +171,11 @@ class PlanResult:
 
     @cached_property
     def clearance(self) -> float | None:
-        """Lower bound of the path's distance from all obstacles; None where the world cannot measure it.
+        """Lower bound of the path's distance from all obstacles; None if the world cannot measure it.
 
-        For a disk in map units, exact within 1e-3 pixels; for an arm in metres, proved for its `bodies`, within 0.1 mm,
-        and 1 m at most.  The clearances of the query and of obstacles and the padding of links are part of it.  It is
-        computed on first use: for an arm in some milliseconds.
+        For a disk it is in map units, exact within 1e-3 pixels.  For an arm it is in metres, proved for its `bodies`,
+        within 0.1 mm, and at most 1 m.  It includes the clearances of the query and of obstacles, and the padding of
+        links.  It is computed on first use; for an arm this takes some milliseconds.
         """
         if self.path is None or not isinstance(self.world, MeasuresPaths):
             return None
@@ -186,7 +185,7 @@ class PlanResult:
     def nearest(self) -> tuple[str, str] | None:
         """The link and the obstacle that come nearest to each other along the path.
 
-        None where all is farther than 1 m, or the world does not say.  It is computed on first use.
+        None if all obstacles are farther than 1 m, or the world cannot say.  It is computed on first use.
         """
         if self.path is None or not isinstance(self.world, NamesNearest):
             return None
@@ -194,11 +193,11 @@ class PlanResult:
 
     @cached_property
     def lower_bound(self) -> float | None:
-        """A length that no path from the start to a goal falls below, in the units of the space.
+        """Lower bound of the length of every path from the start to a goal, in the units of the space.
 
-        For a disk on a map it is that of the shortest way through all cells that are not blocked throughout, found in
-        some milliseconds on first use; else the straight distance to the nearest goal.  None in a plan that was read
-        from a file.
+        For a disk on a map it is the length of the shortest path through all cells that are not entirely blocked, found
+        in some milliseconds on first use.  Else it is the straight distance to the nearest goal.  None in a plan that
+        was read from a file.
         """
         if self.world is None:
             return None
@@ -208,7 +207,7 @@ class PlanResult:
 
     @cached_property
     def gap(self) -> float | None:
-        """By what share the path is longer than the shortest, at most: no path is shorter than `lower_bound`.
+        """Largest share by which the path can be longer than the shortest, from `lower_bound`.
 
         None without a path, and in a plan that was read from a file.
         """
@@ -245,13 +244,13 @@ class PlanResult:
     def bodies(self) -> str | None:
         """The kinds of the robot's bodies that the answer is about, as ``hulls and meshes`` or ``capsules``.
 
-        None of what is no arm.
+        None for worlds other than an arm's.
         """
         return getattr(self.world, "bodies", None)
 
     @property
     def _proved(self) -> str:
-        """What is shown, and about which bodies."""
+        """The kind of proof, and the bodies it is about."""
         return str(self.proof) if self.bodies is None else f"{self.proof} ({self.bodies})"
 
     def resample(self, step: float) -> Floats:
@@ -289,7 +288,7 @@ class PlanResult:
         Parameters
         ----------
         path : str or path-like
-            ``.json``, all of it; ``.csv``, the waypoints; ``.png``, a picture.
+            ``.json``, the whole plan; ``.csv``, the waypoints; ``.png``, a picture.
 
         Raises
         ------
@@ -349,7 +348,7 @@ class PlanResult:
         return load_plan(path)[0]
 
     def plot(self, path: str | os.PathLike[str] | None = None, *, world: World | None = None) -> Image:
-        """Return a picture of the plan, a PIL image, which a notebook shows; save it if a file is named.
+        """Return a picture of the plan as a PIL image, which a notebook shows; save it if a file is named.
 
         Parameters
         ----------
@@ -382,17 +381,17 @@ class PlanResult:
         return plot_result(self, path, world)
 
     def trajectory(self, limits: Any = None, *, speed: float = 1.0, **options: Any) -> Any:
-        """Return the path with times; the motion as driven is checked.
+        """Return the path with times; the motion as driven is checked for collisions.
 
         Parameters
         ----------
         limits : Limits, or the file of a ``joint_limits.yaml``, optional
-            Default: those of the robot; of worlds without one as `speed` says.
+            Default: those of the robot; in worlds without a robot, `speed` alone limits the motion.
         speed : float
-            With limits, 0 < speed <= 1: takes ``1 / speed`` as long as at full speed.  Without, as on a map: the
-            largest speed along the path, > 0 [units of the map per second], which is reached in half a second.
+            With limits, 0 < speed <= 1: the motion takes ``1 / speed`` times as long as at full speed.  Without limits,
+            as on a map: the largest speed along the path, > 0 [map units per second], reached in half a second.
         **options
-            As :func:`evenroad.trajectory.arm_trajectory` takes them.
+            Options of :func:`evenroad.trajectory.arm_trajectory`.
 
         Returns
         -------
@@ -401,7 +400,7 @@ class PlanResult:
         Raises
         ------
         InvalidValue
-            If there is no path, or there are no limits; else as :func:`evenroad.trajectory.make_trajectory`.
+            If there is no path, or there are no limits; also the errors of :func:`evenroad.trajectory.make_trajectory`.
 
         Examples
         --------
@@ -422,14 +421,14 @@ class PlanResult:
         Parameters
         ----------
         file, robot, scene, srdf : str or path-like
-            Where to write it; the URDF, the scene's file and the SRDF of the plan's world, or names of shipped ones.
+            The file to write; the URDF, the scene's file and the SRDF of the plan's world, or names of shipped ones.
         **packages : path-like
             Folders of ROS packages with meshes, by their names, beside those that are found.
 
         Raises
         ------
         NotAvailable, InvalidValue
-            If robot or scene are what no certificate speaks of (no URDF, or a cloud); if there is no path, or no proof.
+            If certificates do not cover the robot or scene (no URDF, or a cloud), or if there is no path or no proof.
 
         Examples
         --------
@@ -463,7 +462,7 @@ class PlanResult:
         return f"{type(self).__name__}({', '.join(parts)})"
 
     def _repr_html_(self) -> str:
-        """Return what a notebook shows."""
+        """Return the HTML that a notebook shows."""
         rows = {"status": f"{self.status}: {self.message}", "planner": self.planner}
         if self.cost is not None:
             rows |= {"cost": f"{self.cost:.6g}", "proved": self._proved}

@@ -1,4 +1,4 @@
-"""A plan as a notebook shows it: a table, and a drawing of its coordinates."""
+"""HTML of a plan for notebooks: a table, and a drawing of its coordinates."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _COLOURS = ("#1b9e5a", "#2f5fd0", "#d1343b", "#e6a23c", "#6b8aa8", "#3b3f46", "#
 
 def as_html(rows: dict[str, str], path: Floats | None) -> str:
     """Return a table of rows, and a drawing of the coordinates of a path, (p, dim), over its length."""
-    # Imported late: only notebooks show a plan so.
+    # Imported late: only notebooks need it.
     from html import escape
 
     cells = "".join(

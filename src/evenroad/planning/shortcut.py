@@ -1,4 +1,4 @@
-"""Shortcutting: straighten a path with motions that the world calls free; an arm's path is smoothed in the kernel."""
+"""Shortcutting of paths by free motions, for worlds other than an arm's, whose paths are smoothed in the kernel."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ SPREADS = (32, 96)
 A coarse round needs a tenth of the motions and finds most of the gain."""
 MAX_ROUNDS = 8
 PATIENCE = 4
-"""Number of motions that fail a strict check in a round before their neighbours are dropped one step further."""
+"""Number of failed strict checks in a round after which neighbours one step further away are dropped, too."""
 WORTH_WHILE = 1e-2
-"""Share of shortening below which a round is the last one with its number of waypoints."""
+"""Least share of shortening in a round for another round with the same number of waypoints."""
 
 
 def shortcut(world: World, path: Floats, cost: EdgeCost | None = None) -> tuple[Floats, int]:
-    """Return a path that does not cost more, all of whose new motions `world` calls free.
+    """Return a path that does not cost more, with new motions that are free in the world.
 
-    Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
-    and takes the shortest path through them.  The path's own waypoints are always among them, so a round never makes it
-    longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.  Where the
-    world has a strict check (`ValidatesPaths`), the motions of a round's path have to pass it, too.  Those that fail
-    are removed, in time with those beside them, and the next shortest path is tried.
+    Each round puts waypoints evenly along the path, few at first, joins every pair with a free motion between, and
+    takes the shortest path through them.  The path's own waypoints are always among them, so a round never makes it
+    longer.  At the end, unnecessary waypoints are dropped.  It draws no random numbers.  If the world has a strict
+    check (`ValidatesPaths`), the motions of a round's path must also pass it.  Motions that fail are removed, later
+    with their neighbours, and the next shortest path is tried.
 
-    `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  When the time is over, the
-    best path so far is the answer.  The second number is that of the motions checked, without strict checks.
+    `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  When the time is over, the best path so
+    far is the answer.  The second return value is the number of motions checked, without strict checks.
     """
     work = _Shortcut(path, world, world.space.distance if cost is None else cost)
     try:
@@ -82,7 +82,7 @@ class _Shortcut:
                 return
 
     def drop_needless(self) -> None:
-        """From each waypoint go straight to the last one that can be reached, and drop those between."""
+        """Join each waypoint to the last one that can be reached straight, and drop those between."""
         path = self.path
         pairs = _Pairs(self._free_pairs(path), np.arange(len(path)))
         while True:
@@ -94,12 +94,12 @@ class _Shortcut:
                 kept.append(int(reach[kept[-1]]))
             if self._holds(path, np.array(kept), pairs):
                 break
-        # In a metric this never is longer; other costs may prefer the waypoint.
+        # This is never longer in a metric, but other costs may prefer the waypoint.
         if self._total(path[kept]) <= self.length * (1.0 + 1e-12):
             self.path = path[kept]
 
     def _holds(self, waypoints: Floats, kept: Indices, pairs: _Pairs) -> bool:
-        """Return whether the world confirms a path; if it does not, some of its pairs are not usable any more."""
+        """Return whether the world confirms a path; if not, some of its pairs become unusable."""
         look_at_clock()
         along = pairs.along(kept)
         passed = confirmed(self.world, waypoints[kept], ~pairs.trusted[along])
@@ -123,10 +123,10 @@ class _Shortcut:
 
 
 class _Pairs:
-    """Pairs of waypoints that can be joined, among them the steps between a path's `own` ones.
+    """Pairs of waypoints that can be joined, which include the steps between a path's `own` ones.
 
-    Of the `edges`, (m, 2), smaller first, `trusted` ones have passed the strict check, and `usable` ones have not
-    failed it, (m,) each.
+    `edges`, (m, 2), have the smaller row first.  `trusted` ones have passed the strict check, and `usable` ones have
+    not failed it, (m,) each.
     """
 
     def __init__(self, free: Bools, own: Indices) -> None:
@@ -145,9 +145,9 @@ class _Pairs:
         return self._number[np.minimum(kept[:-1], kept[1:]), np.maximum(kept[:-1], kept[1:])]
 
     def give_up(self, failed: Indices) -> None:
-        """Drop these pairs and the unchecked ones beside them: the more have failed, the more.
+        """Drop these pairs and unchecked neighbours, more of them the more pairs have failed.
 
-        What blocks one motion mostly blocks its neighbours, too; one by one, thousands would be tried.
+        An obstacle that blocks one motion mostly blocks its neighbours, too.  Singly, thousands would be tried.
         """
         for pair in self.edges[failed]:
             beside = (np.abs(self.edges - pair) <= self._failures // PATIENCE).all(axis=1)

@@ -1,4 +1,4 @@
-"""Where paths begin and end: at the numbers of their start, and at their goal, up to whole turns."""
+"""Terminals of paths: each begins at the exact numbers of its start, and ends at its goal up to whole turns."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from evenroad.space.protocol import period_of
 from evenroad.world import World
 
 SAME = 1e-9
-"""Largest difference of the numbers at which a path begins from those of the start, for numbers of 1."""
+"""Largest difference between the first numbers of a path and those of the start, for numbers of 1."""
 NEAR = 1e-6
-"""Distance up to which the end of a path counts as the goal, for numbers of 1: rounding only."""
+"""Distance up to which the end of a path counts as the goal, for numbers of 1. It allows only for rounding."""
 
 
 def as_start_and_goals(start: object, goal: object, space: Space) -> tuple[Floats, Floats]:
@@ -35,12 +35,12 @@ def as_start_and_goals(start: object, goal: object, space: Space) -> tuple[Float
 
 
 def _finite(value: object) -> Floats:
-    """Return a copy as floats; for anything but finite numbers an array of a shape that is refused."""
+    """Return a copy as floats; for anything but finite numbers, an array of a shape that is refused."""
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
         return np.empty((0, 0))
-    # Squares of most are finite, too, and faster to test.
+    # The sum of squares is usually finite, and faster to test.
     if math.isfinite(np.vdot(array, array)) or np.isfinite(array).all():
         return array
     return np.empty((0, 0))
@@ -53,7 +53,7 @@ def turns(space: Space) -> bool:
 
 
 def joins(path: Floats, raw: Floats | None, start: Floats, goal: Floats) -> bool:
-    """Return whether a path, and its `raw` one, lead from the very numbers of the start to those of the goal."""
+    """Return whether a path and its `raw` one lead from the exact numbers of the start to those of the goal."""
     first, last = start.tolist(), goal.tolist()
     if path[0].tolist() != first or path[-1].tolist() != last:
         return False
@@ -61,10 +61,10 @@ def joins(path: Floats, raw: Floats | None, start: Floats, goal: Floats) -> bool
 
 
 def from_start_to_goal(space: Space, path: Floats, start: Floats, goal: Floats) -> Floats:
-    """Return a path, (p, dim), from the very numbers of its start to its goal, both (dim,).
+    """Return a path, (p, dim), from the exact numbers of its start to its goal, both (dim,).
 
-    Where coordinates repeat, numbers go on from those of the start, so that the path may end whole periods from those
-    of the goal.  AssertionError for a path that leads elsewhere.
+    Coordinates that repeat continue from those of the start, so the path may end whole periods away from the goal.
+    Raises AssertionError for a path that leads elsewhere.
     """
     on = continued(path, space, start) if turns(space) else path
     if not joins(on, None, start, goal):
@@ -78,7 +78,7 @@ def from_start_to_goal(space: Space, path: Floats, start: Floats, goal: Floats) 
 
 
 def turns_at_end(world: World, path: Floats, goal: Floats) -> str:
-    """Return in words which coordinates of a path's end are whole periods from the goal; nothing where none is."""
+    """Return in words which coordinates of a path's end are whole periods from the goal; an empty text if none."""
     period = period_of(world.space)
     if period is None or not (away := np.rint((path[-1] - goal) / period)).any():
         return ""
@@ -94,7 +94,7 @@ def _gap(space: Space, configuration: Floats, wanted: Floats) -> float:
 
 
 def _gap_in_numbers(space: Space, configuration: Floats, wanted: Floats) -> float:
-    """Return the largest difference of coordinates that repeat: a distance is the same for all their turns."""
+    """Return the largest difference of repeating coordinates; a distance would ignore their turns."""
     period = period_of(space)
     return 0.0 if period is None else float(np.abs(configuration - wanted).max(where=np.isfinite(period), initial=0.0))
 

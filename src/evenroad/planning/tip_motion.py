@@ -1,4 +1,4 @@
-"""Constraints of an arm: straight lines of its tip at start and goal, and what it keeps all along."""
+"""Plans of an arm under constraints: straight lines of its tip at start and goal, and bounds along the whole path."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from evenroad.space.path import path_length
 from evenroad.world import World
 
 LINES = 16
-"""Largest number of goals, the nearest to which a straight line leads."""
+"""Largest number of nearest goals to which straight lines are planned."""
 
 _TRIED = 0, 1, 4, 16
-"""Numbers of nearest goals to which one motion is tried, all of a number together, before trees grow."""
+"""Bounds of the groups of nearest goals to which one motion is tried, group by group, before trees grow."""
 
 PlanOnce = Callable[[Problem], PlanResult]
 """A function that plans without constraints."""
@@ -39,7 +39,8 @@ PlanOnce = Callable[[Problem], PlanResult]
 def plan_constrained(problem: Problem, plan_once: PlanOnce) -> PlanResult:
     """Plan under the constraints of a problem by `plan_once`; the result has bounds on the largest deviations.
 
-    Lines come first: the plan leads from the end of the line at the start to the beginnings of the lines to goals.
+    Lines are planned first.  The plan then leads from the end of the line at the start to the beginnings of the lines
+    to goals.
     """
     world, constraints = problem.world, problem.constraints
     line, keeps, drive = (
@@ -98,14 +99,14 @@ def _walked(problem: Problem, world: KeptWorld) -> PlanResult | None:
         some = rows[begin:end]
         row, path = world.first_along(np.repeat(start[np.newaxis], len(some), axis=0), goals[some])
         if row >= 0:
-            # One motion is as short as can be.
+            # A single motion is the shortest path.
             result = solution(problem, path, int(some[row]), planner="trees")
             return _with_path(world, result, path, path, world.deviation(world.largest(path)))
     return None
 
 
 def _through(world: KeptWorld, result: PlanResult, shorten: Smooth) -> PlanResult:
-    """Return a plan along projected milestones with all states of its path, and how far it is off at most."""
+    """Return a plan along projected milestones, with all states of its path and its largest deviations."""
     if result.path is None:
         return result
     raw = world.path_through(result.path)
@@ -124,7 +125,7 @@ def _between_lines(
     world, start, goals = problem.world, problem.start, problem.goals
     assert isinstance(world, ArmWorld), "only arms have constraints"
     if problem.given is not None:
-        # Other lines may lead to other postures: nothing is proved about poses.
+        # Other lines may lead to other postures, so nothing is proved about poses.
         between = replace(problem, given=replace(problem.given, poses=(), whole=False))
     else:
         between = problem
@@ -172,7 +173,7 @@ def _between_lines(
 
 
 def _line(within: World, world: ArmWorld, chain: Chain, straight: CartesianLine, q: Floats, length: float) -> Followed:
-    """Return a straight line, or refuse it where it does not keep constraints, maybe those of another link."""
+    """Return a straight line, or refuse it if it violates constraints, perhaps those of another link."""
     line = line_from(world, chain, straight, q, length)
     return line if line.why or not isinstance(within, KeptWorld) else kept_line(within, line)
 

@@ -42,8 +42,8 @@ Entry = TypeVar("Entry", bound=np.generic)
 class WorldRoadmap:
     """A roadmap with a cache of states in one world; made by :meth:`Roadmap.within`.
 
-    A query's answer depends on the roadmap, the world and the query alone: earlier queries only save checks.  Threads
-    may share it; their queries are answered one after the other.
+    A query's answer depends only on the roadmap, the world and the query; earlier queries only save checks.  Threads
+    may share it; their queries are answered in sequence.
 
     `roadmap` has the milestones and candidate edges, and `world` checks them.
     """
@@ -53,12 +53,12 @@ class WorldRoadmap:
     def __init__(self, roadmap: Roadmap, world: World, *, edge_cost: EdgeCost | None) -> None:
         self.roadmap, self.world, self._edge_cost = roadmap, world, edge_cost
         self._lock = OwnLock()
-        # Milestones and edges come first; start, goals and their links go behind them.
+        # Milestones and edges come first; start, goals and their links follow.
         self._configurations, self._edges = roadmap.milestones, roadmap.edges
         self._weights: Ints | None = None
         self._cache = StateCache.nothing(len(self._configurations), len(self._edges))
         if edge_cost is not None:
-            # Now, so that an invalid cost is refused here.
+            # Computed now, so that an invalid cost is refused here.
             self._costs = edge_costs(world.space, self._configurations, self._edges, edge_cost)
         states = EdgeStates(world, self._configurations, self._edges, cache=self._cache)
         states.evaluate_nodes(np.arange(len(self._configurations)))
@@ -88,16 +88,16 @@ class WorldRoadmap:
     ) -> PlanResult:
         """Find a short free path from start to goal; nothing is checked twice.
 
-        Both are joined to one another, to milestones as the rule's :class:`Reach` says, and to as many as `links` says.
-        Counts of checks are those of this query; `planner` says who found the path: ``prm lazy``, or ``prm lazy, then
-        trees``.
+        Both are joined to each other, to the milestones of the rule's :class:`Reach`, and to `links` nearest ones.
+        Counts of checks are those of this query.  `planner` names the search that found the path: ``prm lazy``, or
+        ``prm lazy, then trees``.
 
         Parameters
         ----------
         start, goal, search, smooth, links, budget
-            As in :func:`plan`, whose errors these are; by default lazily.
+            As in :func:`plan`, with the same errors; by default lazily.
         connector : Connector, optional
-            Smooths the path, and searches where the roadmap has no path; not with an `edge_cost`.
+            Smooths the path, and searches if the roadmap has no path; not with an `edge_cost`.
         """
         require_known("search", search, FINDERS)
         require_links(links)
@@ -107,7 +107,7 @@ class WorldRoadmap:
         )
 
     def solve(self, problem: Problem) -> PlanResult:
-        """Plan along the roadmap, in its world, as planners of :func:`evenroad.plan` do."""
+        """Plan along the roadmap in its world, like a planner of :func:`evenroad.plan`."""
         return self._solved(problem, "lazy", LINKS, connector_of(self.world))
 
     @in_its_time
@@ -182,7 +182,7 @@ class WorldRoadmap:
         return np.concatenate(links).astype(np.int32)
 
     def _weigh(self, links: Floats, nodes: int) -> tuple[Ints, FixedPoint]:
-        """Return the weights of the edges and then of these links, (l,), and their unit."""
+        """Return the weights of the edges, followed by those of these links, (l,), and their unit."""
         edge_weights, m = self._edge_weights, len(self.roadmap.edges)
         unit = FixedPoint.of(max(edge_weights.longest, float(links.max())), nodes)
         if unit != edge_weights.unit:
@@ -198,10 +198,10 @@ class WorldRoadmap:
 
 
 def _with_capacity(array: npt.NDArray[Entry], kept: int, more: int) -> npt.NDArray[Entry]:
-    """Return an array with capacity for more rows behind those that are kept: itself, or a longer copy."""
+    """Return an array with capacity for more rows after those that are kept: the same array, or a longer copy."""
     if len(array) >= kept + more:
         return array
-    # Twice the rows, so that few queries have to copy.
+    # Twice the rows, so that few queries must copy.
     longer = np.zeros((kept + 2 * more, *array.shape[1:]), dtype=array.dtype)
     longer[:kept] = array[:kept]
     return longer

@@ -1,4 +1,4 @@
-"""Roadmaps: points x space -> neighbour graph; x world -> plan."""
+"""Roadmaps: graphs of neighbouring points in a space, which plan paths in a world."""
 
 from evenroad._lazy import names_on_use
 

@@ -1,4 +1,4 @@
-"""Budgets of planners and queries, and how long each phase took."""
+"""Budgets of planners and queries, and a stopwatch for their phases."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from time import perf_counter as now
 from evenroad._checks import require_count, require_positive
 
 BEFORE_PROOF, BEFORE_REASONS = 0.7, 0.9
-"""Shares of the time after which a search leaves the rest to a proof that there is no path, where none was tried; and
-after which both leave the rest to the reasons for it."""
+"""Shares of the time.  `BEFORE_PROOF`: the search ends, and a proof that there is no path begins, unless one was tried.
+`BEFORE_REASONS`: search and proof end, and the rest is to find reasons why there is no path."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,10 +19,10 @@ class Budget:
     Attributes
     ----------
     seconds : float or None
-        Wall time, > 0; what a planner finds within it depends on the machine.  A path that is found by then is the
-        answer, smoothed or not.  None: no limit.
+        Wall time, > 0; the result within it depends on the machine.  A path that is found by then is the answer,
+        smoothed or not.  None: no limit.
     motions : int or None
-        Largest number of motions checked, >= 1, without those of shortcutting.  None: no limit.
+        Largest number of motions checked, >= 1, not counting shortcutting.  None: no limit.
     samples : int
         Largest number of points drawn by a planner that grows, valid or not, >= 1.
     rounds : int or None
@@ -53,9 +53,9 @@ class Budget:
 
 
 class Stopwatch:
-    """Adds up the seconds spent inside ``with watch("phase"):``, also when the block raises.
+    """Sums the seconds spent inside ``with watch("phase"):``, also when the block raises.
 
-    A phase inside another one stops the clock of the outer one, so the phases add up to the whole.
+    A phase inside another one pauses the outer one, so the phases add up to the whole.
     """
 
     def __init__(self) -> None:

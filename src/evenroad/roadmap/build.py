@@ -1,4 +1,4 @@
-"""Building roadmaps: points of a space's cube, joined by a rule."""
+"""Makers of roadmaps: a rule joins points of a space's cube."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from evenroad.world import World
 
 @explains_calls
 def build_roadmap(world: World, points: int | PointSet, *, rule: Rule | None = None) -> Roadmap:
-    """Build a roadmap once, for many queries in a world, and in others of the same space.
+    """Build a roadmap for many queries in a world, and in other worlds of the same space.
 
-    Its edges are candidates: they are checked when a query needs them, and those of an answer are proved.
+    Its edges are candidates.  A query checks the edges that it needs, and proves those of its answer.
 
     Parameters
     ----------
     world : World
-        Whose space the roadmap is for; its obstacles do not matter.
+        A world with the space of the roadmap; its obstacles do not matter.
     points : int or PointSet
-        The milestones, in the unit cube of the space, or the number of even ones.
+        The milestones, in the unit cube of the space, or a number of even ones.
     rule : Rule, optional
         How milestones are joined.  Default: the 20 nearest, or 2 d.
 
@@ -58,14 +58,15 @@ def build_roadmap(world: World, points: int | PointSet, *, rule: Rule | None = N
 
 
 def roadmap_of_points(space: Space, points: PointSet | int, rule: Rule | None = None) -> Roadmap:
-    """Join the points, or this number of even ones, by the rule, by default ``KNearest(20)``, or 2 d; memory O(m).
+    """Join the points, or this number of even ones, by the rule; memory is O(m).
 
-    The graphs of the last 64 sets of a pool (the bank, or the user's cache) stay in memory.  Raises InvalidValue if the
-    points do not have the dimension of the space's cube.
+    The default rule is ``KNearest(20)``, or 2 d if that is more.  The graphs of the last 64 sets of a pool (the bank,
+    or the user's cache) stay in memory.  Raises InvalidValue if the points do not have the dimension of the space's
+    cube.
     """
     points = as_points(points, space, rule)
     rule = KNearest(max(20, 2 * space.cube_dim)) if rule is None else rule
-    # Sets of a pool come again and again, others hardly ever; a user's own space may not be hashable.
+    # Only sets of a pool are used repeatedly. A user's own space may not be hashable.
     from_pool = points.origin.replica is not None
     if from_pool and isinstance(space, Hashable) and isinstance(rule, Hashable):
         milestones, edges = _joined_once(space, points, rule)

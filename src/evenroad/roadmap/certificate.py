@@ -1,23 +1,23 @@
-"""What a roadmap guarantees for every world of its space, from a bound of the dispersion of its milestones alone.
+"""Certificate: guarantees of a roadmap for every world of its space, from a bound of its milestones' dispersion alone.
 
-Let beta bound the distance of every point of the space from its nearest milestone.  All free motions are tried between
-milestones up to R, and between start or goal and milestones up to E.  A path has clearance delta if all points nearer
-to it than delta are free.
+Let beta bound the distance of every point of the space from its nearest milestone.  The roadmap tries all motions
+between milestones up to the length R, and between start or goal and milestones up to E.  A path has clearance delta if
+all points nearer to it than delta are free.
 
-1.  R >= 2 beta, delta >= beta: there is a path along the roadmap.  The milestones nearest to the points of the path,
-    in turn, are a chain; where it steps from x to y, some point p of the path is within beta of both, so the motion
-    from x to y is at most 2 beta long and stays in the ball around p, which is free.  So, if the roadmap fails, no
-    path has clearance beta.
-2.  delta > beta: with l <= 2 sqrt(delta^2 - beta^2), l <= R - 2 beta, l <= E - beta, a path of length L leads to one
-    of at most L + 2 beta (ceil(L / l) - 1) along the roadmap, so of at most (1 + 2 beta / l) L.  Cut the path into
-    ceil(L / l) equal pieces and take a milestone within beta of each of the inner endpoints p_i: consecutive ones are
-    at most l + 2 beta apart, so tried, and a motion between two stays within beta of the chord from p_i to p_i+1.  A
-    point q there, beside the chord's near half, is at most sqrt(beta^2 + (l / 2)^2) <= delta from p_i: free.  Each of
-    the inner endpoints adds at most 2 beta.  (The proof is that of Tsao, Solovey and Pavone 2020, for any l.)
-    or goal that is tried with its nearest milestone only adds beta more, as does that milestone.
+1.  If R >= 2 beta and delta >= beta, there is a path along the roadmap.  The milestones nearest to the points of the
+    path, in turn, are a chain.  Where it steps from x to y, some point p of the path is within beta of both.  The
+    motion from x to y is thus at most 2 beta long, and stays in the ball around p, which is free.  So, if the roadmap
+    fails, no path has clearance beta.
+2.  Let delta > beta, and l <= 2 sqrt(delta^2 - beta^2), l <= R - 2 beta, l <= E - beta.  Then a path of length L gives
+    one along the roadmap of at most L + 2 beta (ceil(L / l) - 1), so of at most (1 + 2 beta / l) L.  Cut the path into
+    ceil(L / l) equal pieces, and take a milestone within beta of each of the inner endpoints p_i.  Consecutive ones are
+    at most l + 2 beta apart, so they are tried.  A motion between two stays within beta of the chord from p_i to p_i+1.
+    A point q there, beside the chord's near half, is at most sqrt(beta^2 + (l / 2)^2) <= delta from p_i: it is free.
+    Each of the inner endpoints adds at most 2 beta.  (Tsao, Solovey and Pavone 2020 prove it like this, for any l.)
+    If a start or goal is tried only with its nearest milestone, it adds beta more, and so does that milestone.
 
-The same holds on a torus while no motion is longer than half a turn.  The space is a box: the faces are no obstacles,
-and a chord of two of its points stays inside.
+The same holds on a torus while no motion is longer than half a turn.  The space is a box: its faces are no obstacles,
+and a chord between two of its points stays inside.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ SAFE = 1.0 - 1e-12
 
 @dataclass(frozen=True)
 class Certificate:
-    """What is guaranteed of shortest paths along a roadmap; all numbers are in the metric of the space.
+    """Guarantees of shortest paths along a roadmap; all numbers are in the metric of the space.
 
     Attributes
     ----------
     dispersion : float
-        beta: the distance of every point of the space from its nearest milestone is at most this.
+        beta: a bound of the distance of every point of the space from its nearest milestone.
     at_least : float
-        A distance that some point surely has from all milestones: how sharp beta is.
+        A distance that some point certainly has from all milestones. It shows how sharp beta is.
     between : float
         Length up to which all free motions between milestones are tried; inf: all.
     to_terminals : float
-        The same for motions between start or goal and a milestone; that to the nearest one always is.
+        The same for motions between start or goal and a milestone; the nearest one is always tried.
     direct : bool
         Whether the motion from start to goal is tried, too.
     """
@@ -57,14 +57,13 @@ class Certificate:
 
     @property
     def complete(self) -> bool:
-        """Whether every path of clearance `dispersion` leads to one along the roadmap; if that fails, there is none."""
+        """Whether a path of clearance `dispersion` implies one along the roadmap; if that fails, there is none."""
         return SAFE * self.between >= 2.0 * self.dispersion
 
     def longest(self, length: float, clearance: float) -> float:
-        """Return the largest length of the shortest path along the roadmap, where a path of this length and clearance
-        exists.
+        """Return a bound on the length of the roadmap's path, if a path of this length and clearance exists.
 
-        inf where nothing is guaranteed.  Both are finite and > 0, else InvalidValue.
+        The bound is inf if nothing is guaranteed.  Both arguments are finite and > 0, else InvalidValue.
         """
         length, clearance = require_positive("length", length), require_positive("clearance", clearance)
         step, hops = self._step(clearance), 2.0 * self.dispersion

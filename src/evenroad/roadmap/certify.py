@@ -23,14 +23,14 @@ from evenroad.space.protocol import all_distances
 
 
 def certify(points: PointSet, rule: Rule, space: Space, *, links: int | None = LINKS, goals: int = 1) -> Certificate:
-    """Return what ``plan(world, start, goal, points, rule=rule)`` guarantees in every world of the space.
+    """Return the guarantees of ``plan(world, start, goal, points, rule=rule)`` in every world of the space.
 
     Parameters
     ----------
     points : PointSet
         Points of the space's cube.
     rule : KNearest, Radius or Complete
-        Other rules guarantee nothing before the world is known; use :func:`evenroad.plan` with ``certify=True``.
+        Other rules guarantee nothing before the world is known: use :func:`evenroad.plan` with ``certify=True``.
     space : Space
         A space with a flat metric.
     links, goals
@@ -61,9 +61,9 @@ def certify(points: PointSet, rule: Rule, space: Space, *, links: int | None = L
 
 
 def certify_roadmap(roadmap: Roadmap, *, links: int | None = LINKS) -> Certificate:
-    """Return what the queries of a saved roadmap guarantee in every world; errors as :func:`certify`.
+    """Return the guarantees of a saved roadmap's queries in every world; errors are those of :func:`certify`.
 
-    InvalidValue also for a roadmap from a file whose space no world has said yet.
+    Raises InvalidValue also for a roadmap from a file that has not been used within a world.
     """
     if (space := roadmap.space) is None:
         raise InvalidValue("the roadmap is from a file: certify that of roadmap.within(world).roadmap")
@@ -77,7 +77,7 @@ def certify_roadmap(roadmap: Roadmap, *, links: int | None = LINKS) -> Certifica
 
 
 def certify_graph(points: PointSet, space: Space, configurations: Floats, edges: Ints32, terminals: int) -> Certificate:
-    """Return what a graph guarantees for its own start and goals, the last rows of `configurations`, (n, dim).
+    """Return a graph's guarantees for its own start and goals, the last rows of `configurations`, (n, dim).
 
     The other rows are at least the valid ones of `points`.
     """
@@ -90,7 +90,7 @@ def certify_graph(points: PointSet, space: Space, configurations: Floats, edges:
     away, tried, direct = all_distances(space, configurations[n:], configurations[:n]), tried[:, :n], tried[1:, n]
     to_end = SAFE * float(np.min(away[~tried], initial=math.inf))
     if n and to_end < bounds.upper and not tried[np.arange(terminals), away.argmin(axis=1)].all():
-        # Under an unknown rule a terminal may not even be joined to its nearest milestone.
+        # An unknown rule may not even join a terminal to its nearest milestone.
         between = 0.0
     return Certificate(bounds.upper, bounds.lower, min(between, turn), min(to_end, turn), bool(direct.all()))
 
@@ -117,7 +117,7 @@ def _box_of(space: Space) -> tuple[Floats, Bools]:
             " dispersion for others"
         )
     origin = space.from_cube(np.zeros((1, d)))
-    # Half a side is the longest distance where it wraps.
+    # The longest distance on an axis that wraps is half a side.
     sides = 2.0 * space.distance(np.repeat(origin, d, axis=0), space.from_cube(0.5 * np.eye(d)))
     some = 0.5 * np.random.default_rng(0).random((32, d))
     measured = space.distance(np.repeat(origin, len(some), axis=0), space.from_cube(some))
@@ -127,7 +127,7 @@ def _box_of(space: Space) -> tuple[Floats, Bools]:
 
 
 def _half_turn(space: Space) -> float:
-    """Return the length from which a motion may lead in the other direction; inf where nothing wraps."""
+    """Return the length from which a motion may go in the other direction; inf if nothing wraps."""
     sides, wrapping = _box_of(space)
     return 0.5 * SAFE * float(sides[wrapping].min(initial=math.inf))
 
@@ -137,9 +137,10 @@ def _by_neighbours(
 ) -> Certificate:
     """Return the certificate of the k nearest, symmetrised, among the valid milestones, start and goals.
 
-    A milestone x has y among its k nearest if fewer than k others are as near: k - 2 - goals milestones, the start and
-    the goals.  So a pair is tried if it is nearer than the (k - goals)-th milestone is to one of the two.  For a
-    terminal beside x the others are k - 1 - goals milestones and the other terminals: the same distance from x.
+    A milestone x has y among its k nearest if fewer than k others are as near.  These can be k - 2 - goals milestones,
+    the start and the goals.  So a pair is tried if it is nearer than the (k - goals)-th milestone is to one of the two.
+    For a terminal near x the others can be k - 1 - goals milestones and the other terminals, so its distance from x
+    has the same bound.
     """
     q = space.from_cube(points.points)
     rank, n = k - goals, points.n
@@ -157,18 +158,18 @@ def _by_neighbours(
 
 
 def linked_within(q: Floats, most: int, space: Space, dispersion: float) -> float:
-    """Return a length up to which every terminal is linked to milestones, if it is linked to its `most` nearest."""
+    """Return a length up to which a terminal is linked to all milestones, if it is linked to its `most` nearest."""
     if not 0 < most < len(q):
         return 0.0 if most == 0 else math.inf
-    # The ball around a terminal lies in one that is larger by the dispersion around its nearest milestone.
+    # The ball around a terminal lies in the ball around its nearest milestone that is larger by the dispersion.
     return SAFE * float(_ranked(q, most, space).min()) - dispersion
 
 
 def _ranked(q: Floats, rank: int, space: Space) -> Floats:
-    """Return the distance of each row of `q` from its `rank`-th nearest other row, (n,); inf where there are fewer."""
+    """Return the distance of each row of `q` from its `rank`-th nearest other row, (n,); inf if there are fewer."""
     if rank >= len(q):
         return np.full(len(q), math.inf)
-    # Copies: a column would keep all of its block.
+    # Copied, because a column would keep all of its block in memory.
     return np.concatenate([np.partition(away, rank - 1, axis=1)[:, rank - 1].copy() for _, away in _rows(q, space)])
 
 

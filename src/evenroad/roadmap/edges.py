@@ -1,4 +1,4 @@
-"""What edges of a roadmap cost, and how many link a start or a goal to it."""
+"""Costs of a roadmap's edges, and the number of links to a start or goal."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from evenroad.space import Space
 LINKS = 100
 """Number of milestones that start and goals are linked to by default, besides those of the rule.
 
-From a start in a narrow passage few of the nearest milestones are visible.  On shelves, 100 links instead of k = 10 to
-20 add 20 to 45 points of success with every sampler, for some checks a query.  Edges between milestones do not change.
+From a start in a narrow passage, few of the nearest milestones are visible.  On shelves, 100 links instead of k = 10 to
+20 add 20 to 45 points of success with every sampler, for a few checks per query.  Edges between milestones do not
+change.
 """
 
 FEW = 256
@@ -24,9 +25,9 @@ FEW = 256
 
 
 EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
-"""Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
+"""Costs of the motions between the rows of two (m, dim) arrays, (m,); equal in both directions, >= their lengths."""
 BOUND = 1.0 - 1e-9
-"""Smallest ratio of a cost to the length: it leaves room for the rounding of a cost that should be the length."""
+"""Smallest ratio of a cost to the length. It allows for the rounding of a cost that equals the length."""
 
 
 def links_among(milestones: int, links: int | None) -> int:
@@ -45,7 +46,8 @@ def require_links(links: int | None) -> None:
 def edge_costs(space: Space, q: Floats, edges: Ints32, cost: EdgeCost | None = None) -> Floats:
     """Return the costs of the edges between rows of `q`, (m,): by default their lengths.
 
-    InvalidValue for a `cost` of another shape, not finite or below the length: the metric then is no bound.
+    Raises InvalidValue for a `cost` of another shape, or one that is not finite or below the length, since the metric
+    would then be no bound.
     """
     a, b = q[edges[:, 0]], q[edges[:, 1]]
     lengths = space.distance(a, b)

@@ -1,4 +1,4 @@
-"""Neighbours in a space, by kd-tree if its metric is flat, else by all distances."""
+"""Nearest neighbours in a space, by kd-tree if its metric is flat, else by all distances."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ BLOCK = 1 << 16
 def nearest(q: Floats, k: int, space: Space | None = None, *, earlier: bool = False) -> Ints32:
     """Return the k nearest other rows of every row of `q`, (n, dim), nearest first, ties to the lower index.
 
-    By the metric of the space, or else the Euclidean one; shape (n, min(k, n - 1)).  With `earlier` only rows of a
-    lower index count, and row i ends with -1 where there are fewer than k.
+    Distances are those of the space, by default Euclidean.  The shape is (n, min(k, n - 1)).  With `earlier` only rows
+    of a lower index count, and row i ends with -1 if there are fewer than k.
     """
     n, metric = len(q), flat_metric(space)
     k = min(k, n - 1)
@@ -56,7 +56,7 @@ def flat_metric(space: Space | None) -> FlatMetric | None:
 
 
 def in_metric(q: Floats, metric: FlatMetric | None) -> tuple[Floats, Floats]:
-    """Return coordinates and periods in which the metric is Euclidean; wrapping ones are in [0, period)."""
+    """Return coordinates and periods for which the metric is Euclidean; wrapping coordinates are in [0, period)."""
     points = np.array(q, dtype=np.float64, order="C")
     if metric is None:
         return points, np.full(points.shape[1], np.inf)
@@ -64,7 +64,7 @@ def in_metric(q: Floats, metric: FlatMetric | None) -> tuple[Floats, Floats]:
     period = metric.scale * metric.period
     for axis in np.flatnonzero(metric.wrapping):
         points[:, axis] %= period[axis]
-        # The remainder of a tiny negative number rounds up to the period itself.
+        # The remainder of a tiny negative number can round up to the period itself.
         points[points[:, axis] >= period[axis], axis] = 0.0
     return points, period
 
@@ -97,7 +97,7 @@ class Surroundings:
 def nearest_of(distances: Floats, usable: Bools, k: int | None = None, radius: float | None = None) -> Ints32:
     """Return the rows that are usable, the `k` nearest of them, at most `radius` away, nearest first.
 
-    Ties go to the lower row; without a `k` all rows come, in their order.
+    Ties go to the lower row.  Without a `k`, all rows are returned in their order.
     """
     if k is None:
         return np.flatnonzero(usable if radius is None else usable & (distances <= radius)).astype(np.int32)

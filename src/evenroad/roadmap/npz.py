@@ -21,7 +21,7 @@ _OF_ONE_ARM = _OF_ALL | {
     *("robot", "scene", "settings", "turns", "weights"),
     *("surface_points", "surface_triangles"),
 }
-"""Arrays of a roadmap that was made for one arm, as `evenroad roadmap` wrote it before."""
+"""Arrays in files of roadmaps that earlier versions made for one arm."""
 
 
 def save_roadmap(path: Path, roadmap: Roadmap) -> None:

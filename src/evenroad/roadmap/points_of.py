@@ -1,4 +1,4 @@
-"""The points that a roadmap takes in a space if only their number is given."""
+"""The points of a roadmap in a space if only their number is given."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ def as_points(points: PointSet | int, space: Space, rule: Rule | None = None, *,
 
 
 def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
-    """Return n points of the space's cube: `even`, but others in SE(3).
+    """Return n points of the space's cube: `even`, but other ones in SE(3).
 
-    In SE(3) evenness gains nothing: points there are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
-    points.  In a box of four or more dimensions they are contracted to the middle, most for a rule of few neighbours.
+    In SE(3) evenness gains nothing: points are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
+    points.  In a box of four or more dimensions they are contracted to the middle, most if the rule has few neighbours.
     """
     # Imported late: most plans draw no points.
     from evenroad.points.samplers import make_sampler

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class EdgeWeights(NamedTuple):
-    """Edge weights of a roadmap, as integers (m,) of a unit that is large enough for nearly all links."""
+    """Edge weights of a roadmap: integers, (m,), in a unit that is large enough for nearly all links."""
 
     longest: float
     unit: FixedPoint
@@ -38,17 +38,17 @@ class EdgeWeights(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Roadmap:
-    """Milestones and edges for any world of one space, made by ``er.build_roadmap``; never changed.
+    """Milestones and edges for any world of one space, made by ``er.build_roadmap``; it never changes.
 
-    The rule joins all points, valid or not.  Invalid ones take some of the k neighbours, so a larger k than in `plan`
-    is wise: 20 rather than 10.
+    The rule joins all points, valid or not.  Invalid ones are some of the k neighbours, so use a larger k than in
+    `plan`: 20 rather than 10.
 
     Attributes
     ----------
     points : PointSet
         Points of the unit cube of the space.
     rule : Rule
-        Which milestones are joined.
+        The rule that joins milestones.
     milestones : ndarray, shape (n, dim)
         Their configurations, read-only.
     edges : ndarray of int32, shape (m, 2)
@@ -80,7 +80,7 @@ class Roadmap:
         return lengths
 
     def __getstate__(self) -> dict[str, object]:
-        """Return what is sent to another process, which makes a graph of its own."""
+        """Return the state to pickle; another process makes its own graph."""
         return state_without(self, ["graph"])
 
     @cached_property
@@ -96,32 +96,32 @@ class Roadmap:
 
     @cached_property
     def edge_weights(self) -> EdgeWeights:
-        """The edge weights where costs are lengths."""
+        """The edge weights if costs are lengths."""
         return self.weighted(self.lengths)
 
     def weighted(self, costs: Floats) -> EdgeWeights:
         """Return the edge weights for these costs, (m,)."""
         n = len(self.milestones)
-        # Two milestones are at most this far apart.
+        # The largest distance between two milestones.
         across = 2.0 * float(self.surroundings.distances(self.milestones[0]).max()) if n else 0.0
         longest = max(float(costs.max(initial=0.0)), across)
         unit = FixedPoint.of(longest, n + 2)
         return EdgeWeights(longest, unit, unit.weights(costs))
 
     def within(self, world: World, *, edge_cost: EdgeCost | None = None) -> WorldRoadmap:
-        """Return a planner in a world, for many queries.  It keeps the result of every check; threads may share it.
+        """Return a planner in a world for many queries.  It keeps the result of every check; threads may share it.
 
         Parameters
         ----------
         world : World
-            Milestones are checked now, edges when a query needs them.
+            The world.  Milestones are checked now, edges when a query needs them.
         edge_cost : callable, optional
             As in :class:`evenroad.PRM`.
 
         Raises
         ------
         InvalidValue
-            If the world has another space: the points, or the distances, differ there.
+            If the world has another space, in which points or distances differ.
 
         Examples
         --------

@@ -1,7 +1,7 @@
-"""Connection rules: which pairs of milestones a roadmap tries to join, each by its name.
+"""Connection rules: each chooses the pairs of milestones that a roadmap tries to join, and has a name.
 
 The rule is part of every result: the same points give 15 % or 62 % success under two rules.  Candidates are all other
-configurations; ties go to the lower index, and start and goals come last.
+configurations.  Ties go to the lower index; start and goals come last.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from evenroad.space import Space
 
 @dataclass(frozen=True)
 class Reach:
-    """How a start or goal is joined to milestones: to its `k` nearest ones, or to those within `radius`.
+    """The milestones that a start or goal is joined to: its `k` nearest ones, or those within `radius`.
 
-    If both are None: to all.
+    If both are None, it is joined to all.
     """
 
     k: int | None = None
@@ -42,7 +42,7 @@ class Rule(Protocol):
         """
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return how a start or goal is joined to a finished roadmap of this number of milestones."""
+        """Return the reach of a start or goal in a finished roadmap of this number of milestones."""
 
 
 def ascending(pairs: npt.NDArray[np.integer], n: int) -> Ints32:
@@ -54,14 +54,14 @@ def ascending(pairs: npt.NDArray[np.integer], n: int) -> Ints32:
 
 
 def plain(number: float) -> str:
-    """Return a number in the fewest digits that read back as the same number."""
+    """Return a number with the fewest digits that give back the same number."""
     short = f"{number:g}"
     return short if float(short) == number else repr(number)
 
 
 @dataclass(frozen=True)
 class Complete(Rule):
-    """``complete``: every pair is an edge; O(n^2) of them."""
+    """``complete``: every pair is an edge, O(n^2) in all."""
 
     def __str__(self) -> str:
         return "complete"
@@ -71,7 +71,7 @@ class Complete(Rule):
         return np.stack(np.triu_indices(len(q), k=1), axis=1).astype(np.int32)
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that a terminal is joined to all milestones; see :class:`Rule`."""
+        """Return the reach of all milestones; see :class:`Rule`."""
         return Reach()
 
 
@@ -89,7 +89,7 @@ class ByNumber(Rule):
         return f"k={self.k} {self.which}"
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that a terminal is joined to its k nearest; see :class:`Rule`."""
+        """Return the reach of the k nearest; see :class:`Rule`."""
         return Reach(k=self.k)
 
 
@@ -128,19 +128,19 @@ class Radius(Rule):
         return ascending(within(q, self.r, space), len(q))
 
     def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that a terminal is joined to all within the radius; see :class:`Rule`."""
+        """Return the reach of the radius; see :class:`Rule`."""
         return Reach(radius=self.r)
 
 
 def default_rule(space: Space) -> KNearest:
-    """Return ``k=10 symmetrised`` below six dimensions, ``k=20 symmetrised`` from there on; never fewer than 2 d.
+    """Return ``k=10 symmetrised`` below six dimensions, else ``k=20 symmetrised``; never fewer than 2 d.
 
-    The nearest points of a lattice lie opposite each other in pairs, so fewer than 2 d of them leave directions out.
+    The nearest points of a lattice are opposite each other in pairs, so fewer than 2 d of them miss some directions.
 
     From six dimensions on, k matters more than the sampler.  Success in random worlds of balls and of boxes with
     Owen-Sobol points at k = 4 / 6 / 10 / 20: 53 / 67 / 75 / 78 % (d=5, N=256), 46 / 59 / 69 / 75 % (d=6, N=512),
     49 / 62 / 72 / 78 % (d=7, N=512), 46 / 56 / 64 / 71 % (d=10, N=512).  The step from 10 to 20 gives 3 to 4 points
-    in d=5 and 6 to 7 from d=6 on, where it costs a lazy search few checks.
+    in d=5, and 6 to 7 from d=6 on.  It costs a lazy search few checks.
     """
     d = space.cube_dim
     return KNearest(max(20 if d >= 6 else 10, 2 * d))
@@ -156,13 +156,13 @@ FORMS: Forms = {
     "radius=R": (rf"radius={NUMBER}", lambda r: Radius(float(r))),
     "complete": (r"complete", Complete),
 }
-"""Form of a rule's name -> its pattern, and what makes the rule of the numbers in it."""
+"""Form of a rule's name -> its pattern, and the constructor of the rule from its numbers."""
 
 
 def rule_named(name: str, forms: Forms = FORMS) -> Rule:
     """Return the rule whose ``str()`` is `name`, for example ``k=10 symmetrised``.
 
-    UnknownName, with the known forms, if there is no such rule; InvalidValue if it does not take such a number.
+    Raises UnknownName, with the known forms, if there is no such rule; InvalidValue for a number out of its range.
     """
     for pattern, make in forms.values():
         if match := re.fullmatch(pattern, name.strip()):

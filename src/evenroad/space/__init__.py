@@ -1,4 +1,4 @@
-"""Spaces: from the unit cube to configurations, with a metric and shortest interpolation."""
+"""Spaces of configurations: a map from the unit cube, a metric, and shortest interpolation."""
 
 from evenroad._lazy import names_on_use
 

@@ -1,4 +1,4 @@
-"""Reading arguments: batches of configurations and rows of parameters; InvalidValue names what is wrong."""
+"""Readers of arguments: batches of configurations, and rows of parameters; InvalidValue names the fault."""
 
 from __future__ import annotations
 

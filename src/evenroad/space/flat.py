@@ -13,11 +13,11 @@ from evenroad.errors import InvalidValue
 
 @dataclass(frozen=True, eq=False)
 class FlatMetric:
-    """The metric ``sqrt(sum_k (scale_k wrap_k(b_k - a_k))^2)``: what a neighbour tree needs to know of a space.
+    """The metric ``sqrt(sum_k (scale_k wrap_k(b_k - a_k))^2)``, which neighbour trees use.
 
-    ``wrap_k(x)`` is `x` shifted by the multiple of ``period_k`` that brings it nearest to 0.  `scale`, (dim,), is what
-    a unit of each coordinate counts, finite and > 0; `period`, (dim,), after how much each repeats, > 0, ``inf`` where
-    it does not.  InvalidValue if the two are not such arrays of one length >= 1.
+    ``wrap_k(x)`` is `x` shifted by the multiple of ``period_k`` that brings it nearest to 0.  `scale`, (dim,), is the
+    weight of a unit of each coordinate, finite and > 0.  `period`, (dim,), is the period of each coordinate, > 0,
+    ``inf`` if it does not repeat.  Raises InvalidValue if the two are not such arrays of one length >= 1.
     """
 
     scale: Floats
@@ -55,12 +55,12 @@ class FlatMetric:
     def difference(self, a: Floats, b: Floats) -> Floats:
         """Return ``b - a`` in the shorter direction, not scaled, for two (n, dim) arrays as (n, dim).
 
-        Opposite values of a wrapping coordinate keep the sign of ``b - a``: the motion between them is the same both
-        ways and, within one period, does not cross its bounds.
+        Opposite values of a wrapping coordinate keep the sign of ``b - a``.  The motion between them is the same in
+        both directions and, within one period, does not cross its bounds.
         """
         difference = b - a
         for k in self._turning:
-            # rint takes one half to zero: exactly opposite values stay as they are.
+            # rint rounds one half to zero, so exactly opposite values stay unchanged.
             difference[:, k] -= self.period[k] * np.rint(difference[:, k] / self.period[k])
         return difference
 

@@ -1,4 +1,4 @@
-"""Spaces of numbers side by side: BoxSpace, bounded axes; Circle, an angle that wraps; JointSpace, joints of an arm."""
+"""Spaces of independent axes: BoxSpace, bounded axes; Circle, an angle that wraps; JointSpace, joints of an arm."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import Space
 
 SLACK = 1e-5
-"""Largest excess of a joint's value over its limit: values of five printed decimals have it [rad or m]."""
+"""Largest excess of a joint's value over its limit, as in values with five printed decimals [rad or m]."""
 
 
 class FlatSpace(Space):
     """Base of the spaces whose axes are ranges, each bounded or wrapping; a subclass calls `_set_axes`.
 
-    A wrapping axis takes any number and gives one in its half-open range ``[low, high)``.
+    A wrapping axis accepts any number, and returns one in its half-open range ``[low, high)``.
     """
 
     _low: Floats
@@ -68,7 +68,7 @@ class FlatSpace(Space):
             try:
                 return row_distances(a, b, flat.scale, flat.period)
             except InvalidValue:
-                # No sound arrays, as the kernel takes them: they are read, or refused by `as_batch`.
+                # The kernel accepts only sound arrays; `as_batch` reads or refuses all others.
                 pass
         first, second = as_batch_pair(a, b, self.dim)
         return self._flat.distance(self._canonical(first), self._canonical(second))
@@ -81,15 +81,15 @@ class FlatSpace(Space):
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the short motion from `a` to `b`.
 
-        Exact at both endpoints and never beyond them.  Between opposite values of a wrapping axis the motion does not
-        cross the bounds of its range.
+        It is exact at both endpoints, and never goes beyond them.  Between opposite values of a wrapping axis the
+        motion does not cross the bounds of its range.
         """
         first, second = map(self._canonical, as_batch_pair(a, b, self.dim))
         fraction = as_fractions(t, len(first))
         between = first + fraction * self._flat.difference(first, second)
         bounded = ~self._flat.wrapping
         start, end = first[:, bounded], second[:, bounded]
-        # This form, unlike a + t (b - a), is exact at both endpoints; clipped, since a = b can still round.
+        # This form, unlike a + t (b - a), is exact at both endpoints. It is clipped, because a = b can still round.
         straight = (1.0 - fraction) * start + fraction * end
         between[:, bounded] = np.clip(straight, np.minimum(start, end), np.maximum(start, end))
         return np.where(fraction == 1.0, second, self._canonical(between))
@@ -117,7 +117,7 @@ class FlatSpace(Space):
         """Do as `wrapped`, for a sound batch."""
         if not self._flat.wraps:
             return q
-        # What is in its range already is not rounded.
+        # Values within their range are not rounded.
         outside = ((q < self._low) | (q >= self._high)) & self._flat.wrapping
         if not outside.any():
             return q
@@ -135,7 +135,7 @@ class BoxSpace(FlatSpace):
     low, high : sequences of dim floats
         ``low < high`` on every axis; stored as tuples.
     weights : sequence of dim floats, optional
-        What a unit of each axis counts in the metric, > 0; 1 by default.
+        Weight of a unit of each axis in the metric, > 0; default 1.
 
     Raises
     ------
@@ -165,7 +165,7 @@ class BoxSpace(FlatSpace):
 class Circle(FlatSpace):
     """The directions of the plane, SO(2), as (n, 1) angles in radians; the metric is the angle between two.
 
-    Any angle is taken; given back are angles in [-pi, pi).
+    Any angle is accepted; returned angles are in [-pi, pi).
 
     Examples
     --------
@@ -183,9 +183,9 @@ class Circle(FlatSpace):
 class JointSpace(FlatSpace):
     """Bounded and wrapping joints in one vector, with the weighted Euclidean metric.
 
-    A revolute joint that can turn on and on wraps; one with stops does not, even where its range exceeds a full turn:
-    the bounds of such a range are far apart.  A wrapping joint repeats after ``high - low``, so in radians these are
-    2 pi apart.  A value may exceed a bound by 1e-5.
+    A continuous joint wraps.  A joint with stops does not, even if its range exceeds a full turn: motions between the
+    bounds of such a range are long.  A wrapping joint repeats after ``high - low``, so in radians these are 2 pi
+    apart.  A value may exceed a bound by 1e-5.
 
     Parameters
     ----------

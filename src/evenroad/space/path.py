@@ -1,4 +1,4 @@
-"""Paths: waypoints, (p, dim), between which a robot moves by the shortest interpolation of its space."""
+"""Paths: waypoints, (p, dim), joined by the shortest interpolation of their space."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from evenroad.errors import InvalidValue
 from evenroad.space.protocol import Space, period_of
 
 ROUNDING = 1e-9
-"""Largest rounding of a number that was turned by whole periods [rad]."""
+"""Largest rounding of a number that was shifted by whole periods [rad]."""
 HALF = 0.5 - 1e-9
-"""A step of so much of a period, or more, may lead there in either direction."""
+"""Share of a period from which a step may go in either direction."""
 
 
 def motion_lengths(path: Floats, space: Space) -> Floats:
@@ -27,10 +27,11 @@ def path_length(path: Floats, space: Space) -> float:
 
 
 def continued(path: Floats, space: Space, start: Floats) -> Floats:
-    """Return a path, (p, dim), in numbers that go on from those of `start`, (dim,), without a jump of a period.
+    """Return a path, (p, dim), with coordinates that continue from `start`, (dim,), without jumps of a period.
 
-    `start` is where the path begins, up to whole periods.  Each waypoint is where the motion from the one before leads;
-    half a period leads there in both directions, and a waypoint in the middle says in which.  Other numbers stay.
+    The path begins at `start`, up to whole periods.  Each waypoint is moved by whole periods to the end of the motion
+    from the one before.  Half a period can be moved in both directions, and a waypoint in the middle decides in which.
+    Coordinates without a period do not change.
     """
     period = _finite_period(space)
     if period is None:
@@ -43,19 +44,19 @@ def continued(path: Floats, space: Space, start: Floats) -> Floats:
 
 
 def _gone_on(path: Floats, period: Floats, start: Floats) -> Floats:
-    """Return a path, (p, dim), without jumps of a period, from the numbers of `start` on."""
+    """Return a path, (p, dim), without jumps of a period, beginning at the numbers of `start`."""
     turns = np.rint(np.diff(path, axis=0, prepend=start[np.newaxis]) / period)
     if not turns.any():
         return path
     shifts = np.cumsum(turns, axis=0)
     on = np.where(shifts == 0.0, path, path - shifts * np.where(np.isfinite(period), period, 0.0))
-    # Turned numbers are rounded.
+    # Shifted numbers are rounded.
     on[0] = np.where((turns[0] != 0.0) & (np.abs(on[0] - start) <= ROUNDING), start, on[0])
     return on
 
 
 def _finite_period(space: Space) -> Floats | None:
-    """Return the period of a space of which a coordinate repeats, (dim,); else None."""
+    """Return the period of a space, (dim,), if one of its coordinates repeats; else None."""
     flat = getattr(space, "flat", None)
     if flat is not None and not flat.wraps:
         return None
@@ -69,7 +70,7 @@ def _whole(steps: Floats, period: Floats) -> Floats:
 
 
 def _between(a: Floats, b: Floats, space: Space, share: Floats) -> Floats:
-    """Return the states at shares of motions, (n, dim), in the numbers that go on from those of `a`."""
+    """Return the states at shares of motions, (n, dim), with coordinates that continue from `a`."""
     states, period = space.interpolate(a, b, share), _finite_period(space)
     if period is None:
         return states
@@ -80,8 +81,8 @@ def _between(a: Floats, b: Floats, space: Space, share: Floats) -> Floats:
 def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> tuple[Floats, Ints]:
     """Divide each motion of a path, (p, dim), p >= 1, into equal segments, numbers (p - 1,), >= 1.
 
-    Returns the states between segments, (1 + sum(segments), dim), waypoints as they are, and the rows of the
-    waypoints, (p,).
+    Returns the states between segments, (1 + sum(segments), dim), which include the exact waypoints, and the rows of
+    the waypoints, (p,).
     """
     own = np.concatenate([[0], np.cumsum(segments)]).astype(np.int64)
     motion = np.repeat(np.arange(len(path) - 1), segments)
@@ -93,7 +94,7 @@ def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> 
 
 
 def resample(path: Floats, space: Space, step: float) -> tuple[Floats, Ints]:
-    """Return states along a path, (s, dim), at most `step` apart, and in which motion each lies, (s,).
+    """Return states along a path, (s, dim), at most `step` apart, and the motion of each, (s,).
 
     Each motion has ``max(1, ceil(length / step))`` equal segments.  Waypoints are among the states, and belong to the
     motion that ends there.  Raises InvalidValue if `step` is not a finite number > 0.

@@ -1,4 +1,4 @@
-"""Product: spaces side by side, as one space; among them the poses of rigid bodies, SE2 and SE3."""
+"""Product: several spaces as one space, such as the poses of rigid bodies, SE2 and SE3."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from evenroad.space.so3 import SO3
 @explains_calls
 @dataclass(frozen=True)
 class Product(Space):
-    """The space of tuples of one configuration from each part, their coordinates one after the other.
+    """The space of tuples of one configuration from each part, with their coordinates in sequence.
 
-    A shortest path of the product is a shortest path in every part at once, each at its own even speed.
+    A shortest path of the product is a shortest path in every part at once, each at constant speed.
 
     Parameters
     ----------
     parts : sequence of Space
         At least one; stored as a tuple.
     weights : sequence of floats, one a part, optional
-        What a unit of each part's distance counts, > 0; 1 by default.
+        Weight of each part's distance, > 0; default 1.
     combine : {"sum", "l2"}
         The distance: ``sum_i w_i d_i``, or ``sqrt(sum_i (w_i d_i)^2)``.
 
@@ -41,7 +41,7 @@ class Product(Space):
     UnknownName
         For another `combine`.
     InvalidValue
-        If parts or weights are none.
+        If parts are no spaces, or weights no such numbers.
 
     Examples
     --------
@@ -76,12 +76,12 @@ class Product(Space):
 
     @property
     def flat(self) -> FlatMetric | None:
-        """The metric as scales and periods, where every part has one and ``combine`` is "l2"; else None."""
+        """The metric as scales and periods, if every part has one and ``combine`` is "l2"; else None."""
         return self._flat
 
     @property
     def period(self) -> Floats:
-        """Those of all parts; a part that does not say has none."""
+        """The periods of all parts; a part without the attribute has none."""
         own = (np.full(part.dim, np.inf) if period_of(part) is None else period_of(part) for part in self.parts)
         return np.concatenate([*own])
 
@@ -163,7 +163,7 @@ class Product(Space):
         return zip(self.parts, self.split(a), self.split(b), strict=True)
 
     def _combined(self, lengths: Iterable[Floats]) -> Floats:
-        """Return one distance out of those of the parts."""
+        """Return the combined distance from those of the parts."""
         weighted = (weight * length for weight, length in zip(self.weights, lengths, strict=True))
         return reduce(np.add if self.combine == "sum" else np.hypot, weighted)
 
@@ -197,9 +197,9 @@ def SE2(
     low, high : pairs of floats
         Bounds of the position.
     weights : pair of floats
-        What a unit of length and a radian count, > 0.
+        Weights of a unit of length and of a radian, > 0.
     combine : {"l2", "sum"}
-        How the two distances make one; with "l2" the metric is flat, so that neighbours are found in a tree.
+        How the two distances are combined. With "l2" the metric is flat, and a tree finds neighbours.
 
     Returns
     -------
@@ -235,9 +235,9 @@ def SE3(
     low, high : sequences of 3 floats
         Bounds of the position.
     weights : pair of floats
-        What a unit of length and a radian, which is one of ``arccos |q . q'|``, count, > 0.
+        Weights of a unit of length and of a radian of ``arccos |q . q'|``, > 0.
     combine : {"sum", "l2"}
-        As of :func:`SE2`; "sum" is OMPL's.
+        As for :func:`SE2`; "sum" is OMPL's.
 
     Returns
     -------

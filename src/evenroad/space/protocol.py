@@ -1,4 +1,4 @@
-"""Space: what a planner needs to know about the configurations of a robot."""
+"""Space: the interface to a set of configurations that planners use."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class Space(Protocol):
     """A set of configurations with a metric, and a map onto it from the unit cube, batch-first.
 
     Implementations never write to their arguments and raise InvalidValue for a wrong shape or an entry that is not
-    finite.  A class that inherits from Space needs to write `dim`, `from_cube`, `distance` and `interpolate` only;
-    ``evenroad.testing.SpaceContract`` checks the rest.
+    finite.  A class that inherits from Space must only write `dim`, `from_cube`, `distance` and `interpolate`.
+    ``evenroad.testing.SpaceContract`` checks an implementation.
     """
 
     @property
@@ -25,17 +25,17 @@ class Space(Protocol):
 
     @property
     def cube_dim(self) -> int:
-        """Number of coordinates of a point of the cube; not `dim` where that has redundant numbers."""
+        """Number of coordinates of a point of the cube; less than `dim` if configurations have redundant numbers."""
         return self.dim
 
     @property
     def flat(self) -> FlatMetric | None:
-        """The metric as scales and periods of the coordinates, or None where it is not of that kind."""
+        """The metric as scales and periods of the coordinates, or None if it is not flat."""
         return None
 
     @property
     def period(self) -> Floats | None:
-        """After how much each coordinate repeats, (dim,), infinite where it does not; None where that is not known."""
+        """The period of each coordinate, (dim,), infinite if it does not repeat; None if not known."""
         return None if self.flat is None else self.flat.period
 
     def from_cube(self, u: Floats) -> Floats:
@@ -92,7 +92,7 @@ class Space(Protocol):
         Raises
         ------
         InvalidValue
-            If a batch has another shape, or what is no configuration in it.
+            If a batch has another shape, or a row is no configuration.
 
         Examples
         --------
@@ -144,7 +144,7 @@ class Space(Protocol):
         return as_batch("q", q, self.dim)
 
     def all_distances(self, a: Floats, b: Floats) -> Floats:
-        """Return the distance of every row of `a` from every row of `b`; some spaces do it faster than one by one.
+        """Return the distance of every row of `a` from every row of `b`; some spaces have a fast method.
 
         Parameters
         ----------
@@ -167,19 +167,19 @@ class Space(Protocol):
 
 
 def all_distances(space: Space, a: Floats, b: Floats) -> Floats:
-    """Return the distances of all pairs of rows, also of a space that does not inherit from Space."""
+    """Return the distances of all pairs of rows, also for a space that does not inherit from Space."""
     own = getattr(space, "all_distances", None)
     return Space.all_distances(space, a, b) if own is None else own(a, b)
 
 
 def period_of(space: Space) -> Floats | None:
-    """Return after how much coordinates repeat, also of a space that does not inherit from Space; None: not known."""
+    """Return the periods of coordinates, also for a space that does not inherit from Space; None if not known."""
     flat = getattr(space, "flat", None)
     own: Floats | None = getattr(space, "period", None) if flat is None else flat.period
     return own
 
 
 def wrapped(space: Space, q: Floats) -> Floats:
-    """Return configurations with coordinates in their ranges, also of a space that does not inherit from Space."""
+    """Return configurations with coordinates in their ranges, also for a space that does not inherit from Space."""
     own = getattr(space, "wrapped", None)
     return q if own is None else own(q)

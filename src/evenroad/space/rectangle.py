@@ -15,9 +15,9 @@ from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import Space
 
 _LARGEST_COSINE = 1e-9
-"""Largest cosine between perpendicular edges: a margin for the rounding of a yaw, not for a slanted frame."""
+"""Largest cosine between perpendicular edges. It allows for the rounding of a yaw, not for a slanted frame."""
 _ROUNDING = 1e-9
-"""Share of an edge by which a point may be outside: a margin for the rounding of a frame far from the origin."""
+"""Share of an edge by which a point may be outside. It allows for rounding in a frame far from the origin."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Rectangle(Space):
     def from_cube(self, u: Floats) -> Floats:
         """Return ``corner + u[:, 0] edge_u + u[:, 1] edge_v`` for `u` of shape (n, 2), as (n, 2)."""
         unit = as_cube_batch(u, 2)
-        # Written out instead of a matrix product: BLAS may round a row differently in a longer batch.
+        # Not a matrix product, because BLAS may round a row differently in a longer batch.
         return np.column_stack(
             [self.corner[k] + unit[:, 0] * self.edge_u[k] + unit[:, 1] * self.edge_v[k] for k in (0, 1)]
         )

@@ -13,14 +13,14 @@ from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_frac
 from evenroad.space.protocol import Space
 
 _UNIT_TOLERANCE = 1e-6
-"""Largest distance of a norm from 1: a margin for quaternions read from a text file with seven digits."""
+"""Largest distance of a norm from 1. It allows for quaternions read from a text file with seven digits."""
 SMALL_ANGLE = 1e-8
 """Angle below which a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
 
 
 @dataclass(frozen=True)
 class SO3(Space):
-    """The rotations of space as unit quaternions (w, x, y, z), of which q and -q are one rotation.
+    """The rotations of space as unit quaternions (w, x, y, z); q and -q are the same rotation.
 
     The metric is ``arccos |q . q'|``, in radians: half the angle of the rotation from one to the other, at
     most pi / 2.  Points of the cube have 3 coordinates, configurations 4.  Norms may differ from 1 by 1e-6.
@@ -45,8 +45,8 @@ class SO3(Space):
     def from_cube(self, u: Floats) -> Floats:
         """Map `u`, (n, 3) in [0, 1]^3, to quaternions, (n, 4), so that equal volumes get equal measure.
 
-        K. Shoemake, "Uniform random rotations", Graphics Gems III, 1992, pp. 124-132.  All unit quaternions
-        are reached, so each rotation twice.
+        The map is that of K. Shoemake, "Uniform random rotations", Graphics Gems III, 1992, pp. 124-132.  It reaches
+        all unit quaternions, so each rotation twice.
         """
         unit = as_cube_batch(u, 3)
         near, far = np.sqrt(1.0 - unit[:, 0]), np.sqrt(unit[:, 0])
@@ -71,8 +71,8 @@ class SO3(Space):
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the rotations a fraction `t`, scalar or (n,) in [0, 1], of the shortest turn from `a` to `b`.
 
-        Spherical linear interpolation (K. Shoemake, SIGGRAPH 1985) towards b or -b, whichever is nearer, and
-        towards b where they are equally near.  Exact at both endpoints.  Errors as `distance`.
+        It is spherical linear interpolation (K. Shoemake, SIGGRAPH 1985) towards b or -b, whichever is nearer, and
+        towards b if they are equally near.  It is exact at both endpoints.  Errors are those of `distance`.
         """
         first, nearer = _on_one_side(a, b)
         fraction = as_fractions(t, len(first))
@@ -83,7 +83,7 @@ class SO3(Space):
         from_nearer = np.where(is_small, fraction, np.sin(fraction * angle) / sine)
         between = from_first * first + from_nearer * nearer
         between /= _norm(between)[:, np.newaxis]
-        # The end as it was given, with its own sign.
+        # The endpoint keeps its own sign.
         return np.where(fraction == 0.0, first, np.where(fraction == 1.0, b, between))
 
 
@@ -98,12 +98,12 @@ def _require_units(**batches: Floats) -> None:
 
 
 def _norm(q: Floats) -> Floats:
-    # Written out: the bits of a row must not depend on the length of the batch, nor huge entries overflow.
+    # Not a library call: bits of a row must not depend on the length of the batch, and huge entries not overflow.
     return np.hypot(np.hypot(q[:, 0], q[:, 1]), np.hypot(q[:, 2], q[:, 3]))
 
 
 def _on_one_side(a: Floats, b: Floats) -> tuple[Floats, Floats]:
-    """Return unit quaternions, (n, 4) each, those of `b` with the sign that brings them nearer to those of `a`."""
+    """Return the unit quaternions `a` and `b`, (n, 4), with the signs of `b` changed to bring it nearer to `a`."""
     first, second = as_batch_pair(a, b, 4)
     _require_units(a=first, b=second)
     products = first * second

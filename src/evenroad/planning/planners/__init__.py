@@ -1,6 +1,6 @@
 """Planners, and the list of them by name: trees, roadmaps, roadmaps that grow, a search of a map's cells.
 
-A new one is a frozen class with ``solve(problem)``, in a file of its own here, and a line in `PLANNERS`.
+A new planner is a frozen class with ``solve(problem)``, in its own file here, and a line in `PLANNERS`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Anytime planning: more and more points of one sequence; no check is made twice."""
+"""Anytime planning: a roadmap with a growing number of points of one sequence; no check is made twice."""
 
 from __future__ import annotations
 
@@ -34,39 +34,39 @@ GROWING = 5
 """Largest dimension in which `growing` was compared with Sobol's points (studies/docs/sequences.md)."""
 
 SETTLED = 0.01
-"""Share of shortening up to which a path counts as settled when the points were doubled."""
+"""Largest share by which a settled path gets shorter when the points are doubled."""
 
 LONGER = 3.0
-"""How many times as long as for one stage it takes at most to make the graph of the next one."""
+"""Largest ratio of the times to make the graphs of a stage and of the one before."""
 
 
 @explains_calls
 @dataclass(frozen=True)
 class GrowingPRM:
-    """A roadmap of more and more points of one sequence: `first`, then twice as many, lazily, until the answer is good.
+    """A lazy roadmap that grows: `first` points of one sequence, then twice as many, until the answer is good.
 
-    Each stage finds what ``PRM(points)`` finds with its points, but nothing that an earlier stage has checked is
-    checked again.  The best path of all stages is the answer.
+    Each stage finds the path of ``PRM(points)`` with its points, but makes no check of an earlier stage again.  The
+    best path of all stages is the answer.
 
     Parameters
     ----------
     sampler : Sampler, optional
         Sampler whose larger sets begin with its smaller ones.  Default: ``growing``, which needs 6 % fewer checks
-        of motions than scrambled Sobol points; from six dimensions on, where it was not tried, Sobol points.
+        of motions than scrambled Sobol points; from six dimensions on, which were not measured, Sobol points.
     first : int
         Number of points of the first stage.
     until : {"solved", "settled", "budget"}
-        Stop with the first path, or when a path has become at most 1 % shorter from one stage to the next, or only when
-        the budget is spent.
+        Stop at the first path, or when a stage makes the path at most 1 % shorter, or when the budget is spent.
     rule, edge_cost, links
         As in :class:`evenroad.PRM`.
     informed : bool
-        Once there is a path, leave out points that no shorter path passes: those not nearer to start and goal together
-        than the path is long (Gammell et al. 2014).  Stages then find other paths than ``PRM(points)``.
+        Once there is a path, omit points that no shorter path can pass (Gammell et al. 2014): the sum of their
+        distances to start and goal is not less than the path's length.  Stages then find other paths than
+        ``PRM(points)``.
 
-    Without a path the status is ``budget_spent``; ``stages`` lists the stages.  Counts are of the last stage, checks
-    of all.  Raises as :class:`evenroad.PRM`, and InvalidValue if the sampler's sets do not begin with the
-    smaller ones.
+    Without a path the status is ``budget_spent``; ``stages`` lists the stages.  Counts are those of the last stage, but
+    checks of all.  Errors are those of :class:`evenroad.PRM`, and InvalidValue if the sampler's larger sets do not
+    begin with its smaller ones.
     """
 
     seconds: ClassVar[float] = 5.0
@@ -96,7 +96,7 @@ class GrowingPRM:
         if sampler is None:
             from evenroad.points.samplers import make_sampler
 
-            # By name: the module of Sobol's points imports scipy.stats, half a second that nobody else needs.
+            # By name, because the module of Sobol's points imports scipy.stats, which takes half a second.
             sampler = make_sampler("growing" if world.space.cube_dim <= GROWING else "sobol")
         points = _draw(sampler, min(self.first, budget.samples), problem, None)
         how = str(rule), connector_of(world), self.edge_cost, self.links
@@ -134,7 +134,8 @@ class _Growth:
         return seconds_left() > LONGER * self.prepared
 
     def take(self, points: PointSet) -> bool:
-        """Search with these points, whose first ones were searched before; return whether the budget was enough."""
+        """Search with these points, which begin with those of the stage before; return whether the budget was enough.
+        """
         attempt, terminals = self.attempt, len(self.attempt.start_and_goals)
         samples = attempt.world.space.from_cube(points.points[self.drawn :])
         drawn = now() - self.began
@@ -167,7 +168,7 @@ class _Growth:
         return not attempt.spent and not attempt.time.is_over
 
     def _may_shorten(self, q: Floats) -> Bools:
-        """Return by which configurations, (n, dim), a path may be shorter than the best: (n,)."""
+        """Return which configurations, (n, dim), a path shorter than the best may pass: (n,)."""
         assert self.best is not None
         assert self.best.cost is not None
         distance, (start, *goals) = self.attempt.world.space.distance, self.attempt.start_and_goals
@@ -196,7 +197,7 @@ class _Growth:
 
 
 class PairCache:
-    """States of pairs of nodes, by names below 2^31 that outlive the nodes' numbers; memory O(pairs)."""
+    """States of pairs of nodes, by names below 2^31 that stay when nodes are renumbered; memory O(pairs)."""
 
     def __init__(self) -> None:
         self._keys, self._states = np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int8)
@@ -209,7 +210,7 @@ class PairCache:
         return np.where(known, np.append(self._states, UNKNOWN)[at], UNKNOWN).astype(np.int8)
 
     def store(self, pairs: npt.NDArray[np.int64], states: npt.NDArray[np.int8]) -> None:
-        """Store states of distinct pairs, the later one of two; `UNKNOWN` is ignored."""
+        """Store states of distinct pairs, replacing earlier ones; `UNKNOWN` is ignored."""
         new = states != UNKNOWN
         keys = np.concatenate([_keys(pairs[new]), self._keys])
         self._keys, first = np.unique(keys, return_index=True)

@@ -24,7 +24,7 @@ from evenroad.space import Space
 
 @dataclass(frozen=True, repr=False)
 class OnPoints:
-    """What :class:`PRM` and :class:`FMT` share: the points, which pairs of them to try, and what a motion costs."""
+    """Base of :class:`PRM` and :class:`FMT`: the points, the pairs of them to try, and the costs of motions."""
 
     seconds: ClassVar[float] = 60.0
 
@@ -56,32 +56,32 @@ class PRM(OnPoints):
     Parameters
     ----------
     points : int or PointSet
-        Points of the unit cube, or how many even ones to draw; the space maps them to configurations.
+        Points of the unit cube, or a number of even ones to draw; the space maps them to configurations.
     k : int, optional
-        Join each milestone to its k nearest, symmetrised; instead of `rule`.
+        Number of nearest milestones that each is joined to, symmetrised; instead of `rule`.
     rule : Rule, optional
-        Which pairs of milestones to try.  Default: that of :func:`evenroad.roadmap.default_rule`.
+        The rule that chooses pairs of milestones.  Default: that of :func:`evenroad.roadmap.default_rule`.
     search : {"lazy", "full"}
         Check only the edges that could lie on the shortest path, or every edge before the search.  Both find the same
         path, bit for bit.
     success_only : bool
-        Only find out whether there is a path; the one returned is not the shortest.
+        Stop at any path; the one returned is not the shortest.
     edge_cost : callable, optional
         Costs of the motions between the rows of two (m, dim) arrays, at least their lengths.  Default: the lengths.
     links : int or None
-        To how many of the nearest milestones start and goals are linked, besides those of the rule; to all up to 256.
-        None: as the rule says, which is what published protocols do.
+        Number of nearest milestones that start and goals are linked to, besides those of the rule.  A roadmap of up to
+        256 milestones is linked to all.  None: only those of the rule, as in published protocols.
     certify : bool
-        Put a :class:`evenroad.roadmap.Certificate` into the result: how much longer than the best path this one can
-        be, and up to which clearance a path may have been missed.
+        Add a :class:`evenroad.roadmap.Certificate` to the result.  It bounds how much longer than the best path this
+        one can be, and the clearance of a path that may have been missed.
 
     Raises
     ------
     InvalidValue
-        If both `k` and `rule` are given, points are of another dimension than the space, an edge costs less than its
+        If both `k` and `rule` are given, points have another dimension than the space, an edge costs less than its
         length, or `certify` is given with `edge_cost` or `success_only`.
     NotAvailable
-        With `certify` where the metric is not flat.
+        With `certify` if the metric is not flat.
     UnknownName
         If there is no such search.
 
@@ -117,8 +117,8 @@ class PRM(OnPoints):
 class FMT(OnPoints):
     """A tree over points that grows outwards in the order of cost: FMT* (Janson et al. 2015).
 
-    Each milestone is joined to the tree over the neighbour that would be best without obstacles, and only that motion
-    is checked.  So the tree is nearly the shortest one, for about one check a milestone.  It can miss a path
+    Each milestone is joined to the tree by the neighbour that would be best without obstacles, and only that motion
+    is checked.  The tree is then nearly the shortest one, for about one check per milestone.  It can miss a path
     that :class:`PRM` finds with the same points.  Without a path, the count ``start_component`` is the size of the
     tree.  Errors are those of :class:`PRM`.
 
@@ -147,7 +147,7 @@ class FMT(OnPoints):
 
 
 def rule_of(planner: OnPoints, space: Space) -> Rule:
-    """Return which pairs of milestones a planner tries in a space."""
+    """Return the connection rule of a planner in a space."""
     if planner.rule is not None:
         return planner.rule
     return default_rule(space) if planner.k is None else KNearest(planner.k)
@@ -156,7 +156,7 @@ def rule_of(planner: OnPoints, space: Space) -> Rule:
 def _on_points(planner: PRM | FMT, problem: Problem, name: str, find: Finder) -> PlanResult:
     """Map the points into the space, join them by the rule, and find a path along the free motions."""
     world = problem.world
-    # The points are chosen for a rule that was given.
+    # A given rule decides which points are drawn.
     given = rule_of(planner, world.space) if planner.rule is not None or planner.k is not None else None
     points = as_points(planner.points, world.space, given, rng=problem.rng)
     rule = default_rule(world.space) if given is None else given

@@ -1,6 +1,6 @@
-"""Planners without a number of points: trees and a search over cells, and the default of each kind of world.
+"""Planners without a number of points, and the default of each kind of world.
 
-Each plans until there is a path, a proof that there is none, or the budget is spent.
+Trees and a search over cells plan until there is a path, a proof that there is none, or the budget is spent.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from evenroad.space.path import path_length
 from evenroad.world import World
 
 _NOTHING = Connection(np.empty((0, 0)), -1, 0, 0, 0)
-"""What searches found before the first."""
+"""The connection before the first search."""
 TO_NEAREST = 300
-"""Largest number of motions checked towards the nearest of several goals alone."""
+"""Largest number of motions checked towards only the nearest of several goals."""
 
 
 @explains_calls
@@ -40,15 +40,15 @@ class RRTConnect:
     """Two trees that grow from start and goals until they meet (Kuffner and LaValle 2000), along an even sequence.
 
     Trees of arms are compiled, and every motion is proved free; trees in other worlds check batches of motions.  They
-    grow to the nearest of several goals first, for a short while, then to all.  Where they do not meet soon, a world
-    that can prove that there is no path tries to.
+    first grow towards the nearest of several goals, for a short time, then towards all.  If they do not meet soon, a
+    world that can prove that there is no path tries to.
 
     Parameters
     ----------
     improve : bool
-        Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` is
+        Continue after the first path until the budget is spent, and return the best path.  The count ``rounds`` is
         then the number of plans, and `stages` says when better paths were found.  Trees of arms then grow only where a
-        path may be shorter: given time, the path comes as near to the shortest as you like.
+        path may be shorter, so that the path converges to the shortest.
 
     Examples
     --------
@@ -64,17 +64,17 @@ class RRTConnect:
 
     @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
-        """Return a path, a proof that there is none, or what was tried; see :class:`RRTConnect`."""
+        """Return a path, a proof that there is none, or a report of the search; see :class:`RRTConnect`."""
         return solve_by(problem, trees_for(problem.world, shortest=self.improve), improve=self.improve)
 
 
 @explains_calls
 @dataclass(frozen=True)
 class GridSearch:
-    """A search over the cells of a map for a disk: exact, and it proves where there is no path.
+    """A search over the cells of a map for a disk: it is exact, and proves if there is no path.
 
-    It leads to the goal that is nearest on the map, around obstacles.  With `improve` a roadmap then grows
-    beside the path until the budget is spent.
+    The path leads to the goal with the shortest way around obstacles.  With `improve`, a roadmap then grows until the
+    budget is spent, to find better paths.
 
     Raises
     ------
@@ -89,7 +89,7 @@ class GridSearch:
     @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
         """Return a path, or the proof that there is none; see :class:`GridSearch`."""
-        # Imported late, as other planners and worlds here: a plan of an arm needs none of them.
+        # Imported late, like other planners and worlds here: a plan of an arm needs none of them.
         from evenroad.world.gridmap.disk_world import DiskWorld
 
         if not isinstance(problem.world, DiskWorld):
@@ -120,13 +120,13 @@ def _growing(improve: bool) -> Planner:
 
 @dataclass(frozen=True)
 class TreesGoOn:
-    """Trees of an arm after their first search, which found no path."""
+    """Trees of an arm that continue after a first search without a path."""
 
     first: Answer
 
     @in_its_time
     def solve(self, problem: Problem) -> PlanResult:
-        """Return what `RRTConnect` returns, which would begin with the same search."""
+        """Return the result of `RRTConnect`, which would begin with the same search."""
         return solve_by(problem, ARM_TREES, first=self.first)
 
 
@@ -135,7 +135,7 @@ def solve_by(
 ) -> PlanResult:
     """Plan with a connector until there is a path, a proof that there is none, or the budget is spent.
 
-    `first` is what the first search found, where that is done.
+    `first` is the answer of the first search, if that is done.
     """
     variant = variant_of(problem.rng)
     if first is None and isinstance(connector, ArmTrees) and len(problem.goals) == 1 and not improve:
@@ -164,7 +164,7 @@ def solve_by(
 def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Answer | None) -> Connection | PlanResult:
     """Search until there is a path or the budget is spent, or return the result that there is none.
 
-    `first` is what the first search found where that is done.
+    `first` is the answer of the first search, if that is done.
     """
     connection, is_tried = _NOTHING, False
     for number, search in enumerate(connector.searches(attempt.world.space.dim)):
@@ -175,7 +175,7 @@ def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Ans
         elif connector.varies:
             found = _connection(attempt, connector, search.most, variant + number)
         else:
-            # The same again, and further.
+            # The same search, with a larger budget.
             attempt.motions_checked -= connection.motions
             connection, found = _NOTHING, _connection(attempt, connector, search.most, variant)
         connection = _after(connection, found)
@@ -192,7 +192,7 @@ def _first_path(attempt: Attempt, connector: Connector, variant: int, first: Ans
 
 
 def _answer(problem: Problem, connector: ArmTrees, variant: int) -> Answer:
-    """Return what one call of compiled code finds, which most queries are answered by."""
+    """Return the answer of one call of compiled code, which suffices for most queries."""
     budget, most = problem.budget, RESTART
     return connector.answer(
         problem.arm,
@@ -227,21 +227,21 @@ def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult
 
 
 def _length(path: Floats, native: float, world: World) -> float:
-    """Return the length of a path: sums of eight numbers or more have another order in NumPy, another last bit."""
+    """Return the length of a path. NumPy sums eight or more numbers in another order, so the last bit may differ."""
     return native if len(path) <= 8 else path_length(path, world.space)
 
 
 def variant_of(rng: RngLike) -> int:
-    """Return the variant of the sequence that drives the trees: 0 is the tuned one, and each seed has another."""
+    """Return the variant of the sequence that drives the trees: 0 is the tuned one; each other seed has its own."""
     if type(rng) is int and rng >= 0:
-        # Making its generator takes as long as a short plan.
+        # Making a generator for it takes as long as a short plan.
         return rng
     seed, drawn = seed_of(rng), generator(rng)
     return int(drawn.integers(1, 2**31)) if seed is None else seed
 
 
 def _connection(attempt: Attempt, connector: Connector, most: int, variant: int) -> Connection:
-    """Join the start to a goal, first by trees to the nearest one: trees to many may meet a far one."""
+    """Join the start to a goal, first by trees to the nearest one, because trees to many may meet a far one."""
     if len(attempt.goals) == 1 or not connector.varies:
         return attempt.connect(connector, variant, most)
     start, goals = attempt.problem.start, attempt.free_goals
@@ -254,7 +254,7 @@ def _connection(attempt: Attempt, connector: Connector, most: int, variant: int)
 
 
 def _after(earlier: Connection, found: Connection) -> Connection:
-    """Return what was found, with the work of an earlier search that found nothing."""
+    """Return a connection, with the work of an earlier search without a path added."""
     return replace(
         found,
         nodes=earlier.nodes + found.nodes,

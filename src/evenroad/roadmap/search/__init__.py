@@ -1,4 +1,4 @@
-"""Shortest paths and connected components, over edges that may still be unchecked."""
+"""Shortest paths and connected components in graphs whose edges may be unchecked."""
 
 from evenroad._lazy import names_on_use
 

@@ -23,7 +23,7 @@ UNKNOWN, FREE, BLOCKED = np.int8(0), np.int8(1), np.int8(2)
 class StateCache:
     """States of nodes and edges: `UNKNOWN`, `FREE` or `BLOCKED`, (nodes,) and (m,) int8.
 
-    `confirmed`, (m,), says which free edges have passed the strict check of a world that has one.
+    `confirmed`, (m,), are the free edges that have passed the strict check of a world that has one.
     """
 
     nodes: States
@@ -40,8 +40,8 @@ class EdgeStates:
     """The states of nodes and edges, filled in as the world checks them; nothing is checked twice.
 
     The nodes are `configurations`, (nodes, dim); the motions of `edges`, (m, 2), are checked from the first node to the
-    second.  `cache` holds earlier states and is updated in place.  At most `most_motions` are checked, in the
-    time that there is.  `configurations_checked` and `motions_checked` count; `watch` gets the phases ``validity`` and
+    second.  `cache` holds earlier states and is updated in place.  At most `most_motions` are checked before the
+    deadline.  `configurations_checked` and `motions_checked` count checks; `watch` times the phases ``validity`` and
     ``motions``.
     """
 
@@ -63,7 +63,7 @@ class EdgeStates:
         self._node_pace, self._edge_pace = Pace(), Pace()
 
     def evaluate_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
-        """Check those of the nodes whose state is unknown; BudgetSpent if time does not allow all."""
+        """Check the nodes whose state is unknown; BudgetSpent if the time is too short for all."""
         unknown = nodes[self.node_states[nodes] == UNKNOWN]
         for rows in in_time(unknown, self._node_pace):
             with self.watch("validity"):
@@ -72,7 +72,7 @@ class EdgeStates:
             self.configurations_checked += len(rows)
 
     def evaluate_edges(self, edges: npt.NDArray[np.integer]) -> None:
-        """Check those of the edges whose state is unknown; BudgetSpent if there are too many."""
+        """Check the edges whose state is unknown; BudgetSpent if there are too many."""
         unknown = edges[self.edge_states[edges] == UNKNOWN]
         wanted = len(unknown)
         if self.most_motions is not None:

@@ -1,6 +1,6 @@
-"""Finding a path while edges are evaluated: all of them, lazily, any path, or a marching tree.
+"""Searches for a path that evaluate edges: all of them, lazily, for any path, or by a marching tree.
 
-And the last check of a path: its world confirms every motion.
+The last function confirms a path: its world checks every motion.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from evenroad.roadmap.search.shortest import NOT_FOUND, FixedPoint, Found, Searc
 from evenroad.world import ValidatesPaths, World
 
 Finder: TypeAlias = Callable[[Any, EdgeStates], Found]
-"""A search, which takes `Terminals`, or all of a `SearchProblem`."""
+"""A search; its first argument is a `SearchProblem`, or only `Terminals`."""
 
 
 def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: float = 1.0) -> SearchProblem:
-    """Return the search over all edges of `states`, whose last nodes are the start and this number of goals.
+    """Return the search problem over all edges of `states`; its last nodes are the start and this number of goals.
 
-    `costs`, (m,), are at least the share `bound` of the distances in the space.
+    `costs`, (m,), are at least `bound` times the distances in the space.
     """
     nodes = len(states.configurations)
     terminals = Terminals.last(nodes, goals)
@@ -51,8 +51,8 @@ def find_after_all(problem: SearchProblem, states: EdgeStates) -> Found:
 def find_lazily(problem: SearchProblem, states: EdgeStates) -> Found:
     """Return the same path as `find_after_all`, but evaluate only what could lie on it.
 
-    The shortest path over edges that are not blocked is evaluated from its start on, up to the first blocked one.  When
-    all of it is free, no path of free edges is shorter (Bohlin and Kavraki 2000).
+    The shortest path over edges that are not blocked is evaluated from its start to the first blocked edge.  When all
+    of it is free, no path of free edges is shorter (Bohlin and Kavraki 2000).
     """
     while True:
         found = best_path(problem, states.edge_states, states.node_states)
@@ -65,7 +65,7 @@ FINDERS: dict[str, Finder] = {"full": find_after_all, "lazy": find_lazily}
 
 
 def _all_free(edges: Ints32, states: EdgeStates) -> bool:
-    """Evaluate the unknown edges of a path, until one is blocked; return whether none is."""
+    """Evaluate the unknown edges of a path until one is blocked; return whether all are free."""
     for number in edges[states.edge_states[edges] == UNKNOWN]:
         states.evaluate_edges(number[np.newaxis])
         if states.edge_states[number] == BLOCKED:
@@ -76,9 +76,9 @@ def _all_free(edges: Ints32, states: EdgeStates) -> bool:
 def find_any(terminals: Terminals, states: EdgeStates) -> Found:
     """Return some path of free edges if there is one; evaluate no more edges than the full search.
 
-    Two trees grow, from the start and from the goals, until they meet: both evaluate the edges that lead nearest to the
-    root of the other.  A search without an answer ends when one of the two can grow no more.  Edges between two nodes
-    of one tree are not evaluated.
+    Two trees grow from the start and from the goals until they meet.  Each evaluates the edges that lead nearest to the
+    root of the other.  A search without an answer ends when one of the two can grow no further.  Edges between two
+    nodes of one tree are not evaluated.
     """
     edges = states.edges
     away = np.stack([_away(states, terminals.goals), _away(states, [terminals.start])])
@@ -107,8 +107,8 @@ _FIRST = 16
 def march(problem: SearchProblem, states: EdgeStates) -> Found:
     """Grow a fast marching tree until it reaches a goal; return the path and the number of nodes of the tree.
 
-    Janson, Schmerling, Clark and Pavone 2015, Algorithm 2.  All nodes are free; ties go to the lower node.  A blocked
-    edge is not evaluated again, but stays the best offer of its node, as in the original.
+    It is Algorithm 2 of Janson, Schmerling, Clark and Pavone (2015).  All nodes are free; ties go to the lower node.  A
+    blocked edge is not evaluated again, but remains the best edge of its node, as in the original.
     """
     goals = set(problem.goals.tolist())
     stage = np.full(problem.graph.nodes, _UNVISITED)
@@ -124,7 +124,7 @@ def march(problem: SearchProblem, states: EdgeStates) -> Found:
         states.evaluate_edges(offers)
         free = states.edge_states[offers] == FREE
         fresh, offers = fresh[free], offers[free]
-        # Added after all were evaluated: no fresh node offers an edge to another one.
+        # Nodes are added after all were evaluated, so that no new node offers an edge to another new one.
         pairs = states.edges[offers]
         giver = np.where(pairs[:, 0] == fresh, pairs[:, 1], pairs[:, 0])
         cost[fresh] = cost[giver] + problem.weights[offers]
@@ -150,14 +150,14 @@ def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
 
 
 def confirmed(world: World, path: Floats, uncertain: Bools) -> Bools:
-    """Return which motions of a path, (p, dim), pass the world's strict check, (p - 1,); all where it has none.
+    """Return which motions of a path, (p, dim), pass the world's strict check, (p - 1,); all if it has none.
 
-    Only the `uncertain` ones, (p - 1,), are checked: the others passed before.
+    Only the `uncertain` ones, (p - 1,), are checked, because the others passed before.
     """
     passed = ~uncertain
     if not isinstance(world, ValidatesPaths):
         return np.ones_like(passed)
-    # Runs of consecutive motions are one call.
+    # Consecutive motions are checked in one call.
     edges = np.flatnonzero(np.diff(np.concatenate([[False], uncertain, [False]])))
     for first, last in edges.reshape(-1, 2):
         passed[first:last] = world.validate(path[first : last + 1])

@@ -1,8 +1,8 @@
 """The shortest path by A* (Hart, Nilsson and Raphael 1968), over integer lengths.
 
-With floats, two paths over the same lengths can differ in the last bit by the order of their edges, and which one
-is shortest then depends on which edges were searched.  Integer lengths make the shortest path, with ties to the
-lower node, one well-defined path: a lazy search and a full one must find the same.
+With floats, two paths over the same lengths can differ in the last bit by the order of their edges.  The shortest one
+then depends on the edges that were searched.  With integer lengths, and ties to the lower node, the shortest path is
+unique, so that a lazy search and a full one find the same.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from evenroad.roadmap.search.edge_states import FREE, States
 
 
 class Found(NamedTuple):
-    """The nodes of a path, start first, and its edges; both empty when there is none.
+    """The nodes of a path, start first, and its edges; both are empty if there is none.
 
     `reached` are the nodes of the tree, for searches that grow one.
     """
@@ -31,17 +31,17 @@ class Found(NamedTuple):
 
 NOT_FOUND = Found(np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
 MOST = 1 << 61
-"""Largest bound: the sum of one and any path is still a 64-bit integer."""
+"""Largest bound. Its sum with any path's length is still a 64-bit integer."""
 _NEXT_TO_ZERO = 1e-280
-"""Smallest longest length: a quantum of a shorter one would lose its digits, or be 0."""
+"""Smallest value of the longest length. A quantum for a shorter one would lose its digits, or be 0."""
 
 
 @dataclass(frozen=True)
 class FixedPoint:
     """Lengths as integer multiples of a quantum, such that every path fits into 61 bits.
 
-    The quantum is ``longest / 2^bits`` with up to 52 bits: as fine as floats are for the longest edge while a graph has
-    fewer than 512 nodes, a bit coarser with each doubling (2^-41 of it at a million).
+    The quantum is ``longest / 2^bits`` with up to 52 bits.  Below 512 nodes it is as fine as floats are for the longest
+    edge.  It is one bit coarser with each doubling of the graph (2^-41 of the longest edge at a million nodes).
     """
 
     quantum: float
@@ -50,7 +50,7 @@ class FixedPoint:
     def of(cls, longest: float, nodes: int) -> FixedPoint:
         """Return the quantum for paths of up to `nodes` edges, none above `longest`."""
         bits = min(52, 61 - max(nodes, 1).bit_length())
-        # Nothing but zero lengths, or what is next to it: any quantum does.
+        # If all lengths are zero or nearly so, any quantum works.
         return cls(longest / 2.0**bits if longest > _NEXT_TO_ZERO else 1.0)
 
     def weights(self, lengths: Floats) -> Ints:
@@ -92,10 +92,10 @@ class SearchProblem(Terminals):
 def best_path(problem: SearchProblem, edge_states: States, node_states: States) -> Found:
     """Return the one shortest path from start to the nearest goal over nodes and edges that are not `BLOCKED`.
 
-    The goals are one virtual node: each has an edge of length 0 to it, and the path to it is the answer.  Among equally
-    short paths it is the one that, followed back from there, always goes to the lowest node.  So it depends on the
-    graph alone, and stays the answer when edges off it are removed: a path of unchecked edges that turns out to be free
-    is the path that a search of the free edges finds.
+    The goals are joined by edges of length 0 to one virtual node, and the path to that node is the answer.  Among
+    equally short paths it is the one that, followed back from there, always goes to the lowest node.  So it depends on
+    the graph alone, and does not change when other edges are removed.  A path of unchecked edges that proves to be free
+    is therefore the path that a search of the free edges finds.
     """
     costs, states = (problem.weights, problem.bounds), (edge_states, node_states)
     return Found(*native.shortest_path(problem.graph, costs, states, problem.start, problem.goals))
@@ -106,8 +106,8 @@ def shortest_path(
 ) -> tuple[Ints32, float]:
     """Return the :func:`best_path` over edges, (m, 2), that are all free, and its length.
 
-    `lengths`, (m,), are >= 0, and `bounds`, (nodes,), consistent lower ones of the paths to the goal.  Where it cannot
-    be reached the path is empty and its length inf.
+    `lengths`, (m,), are >= 0, and `bounds`, (nodes,), are consistent lower bounds of the paths to the goal.  If it
+    cannot be reached, the path is empty and its length inf.
     """
     unit = FixedPoint.of(float(lengths.max(initial=0.0)), nodes)
     graph, weights, to_goal = graph_of(nodes, edges), unit.weights(lengths), unit.bounds(bounds)
@@ -117,7 +117,7 @@ def shortest_path(
 
 
 def length_along(lengths: Floats) -> float:
-    """Return the sum of the lengths along a path, (p - 1,), one after the other from its start on."""
+    """Return the sum of the lengths along a path, (p - 1,), added in order from its start."""
     total = 0.0
     for length in lengths.tolist():
         total += length
@@ -125,7 +125,7 @@ def length_along(lengths: Floats) -> float:
 
 
 def graph_of(nodes: int, edges: Ints32) -> Graph:
-    """Return the graph of undirected edges, (m, 2), that are numbered from 0, without links."""
+    """Return the graph of undirected edges, (m, 2), numbered from 0, without links."""
     return Graph(nodes, np.ascontiguousarray(edges, dtype=np.int32))
 
 
