@@ -1,5 +1,4 @@
-"""Searches for better paths while time is left: below a bound for arms, by a roadmap on maps, else by other sequences.
-"""
+"""Searches for better paths while time is left: below a bound for arms, else by other sequences or a roadmap."""
 
 from __future__ import annotations
 

@@ -134,8 +134,7 @@ class _Growth:
         return seconds_left() > LONGER * self.prepared
 
     def take(self, points: PointSet) -> bool:
-        """Search with these points, which begin with those of the stage before; return whether the budget was enough.
-        """
+        """Search with these points, which begin with earlier ones; return whether the budget was enough."""
         attempt, terminals = self.attempt, len(self.attempt.start_and_goals)
         samples = attempt.world.space.from_cube(points.points[self.drawn :])
         drawn = now() - self.began
