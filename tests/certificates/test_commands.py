@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.certificates.certify import certify
 from evenroad.cli import main
-from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.errors import InvalidValue
 from evenroad_verify.command import main as verify
 from tests.certificates.small import URDF, certificate_in, inputs_of, sources_in
 from tests.certificates.written import accepts, box_reach
@@ -26,28 +25,14 @@ def test_a_command_writes_a_certificate_beside_its_plan(tmp_path, monkeypatch, c
 def test_a_certificate_of_other_bodies_is_refused_before_any_work(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main([*PLAN, "--certificate", "reach.cert", "--bodies", "capsules"]) == 2
-    assert "it is about the URDF's own bodies" in capsys.readouterr().err
+    assert "it is about the bodies of the robot's file" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
 def test_what_no_certificate_speaks_of_is_said(tmp_path):
-    cloud = "obstacles:\n  scan: {shape: cloud, file: scan.xyz}\n"
-    np.savetxt(tmp_path / "scan.xyz", [[3.0, 0.0, 0.0]])
-    with pytest.raises(NotAvailable, match="no certificate speaks of a cloud yet"):
-        certificate_in(tmp_path, cloud, [[0.0], [0.1]])
     world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
     with pytest.raises(InvalidValue, match="a path of an arm"):
         er.plan(world, (3, 3), (27, 17)).certify(tmp_path / "map.cert", robot="ur5", scene="box-reach")
-
-
-def test_links_that_always_touch_are_named_with_what_to_do(tmp_path):
-    plate = """<link name="plate"><collision>
-      <origin xyz="1 0 0"/><geometry><box size="1 1 0.01"/></geometry></collision>
-      </link><joint name="glue" type="fixed"><parent link="base"/><child link="plate"/></joint></robot>"""
-    sources = sources_in(tmp_path, "obstacles: {}\n", URDF.replace("</robot>", plate))
-    world = er.ArmWorld(er.load_robot(sources.robot), er.load_scene(sources.scene))
-    with pytest.raises(InvalidValue, match=r"ball touches plate; .* evenroad robot --write-srdf"):
-        certify(world, np.array([[0.0], [0.1]]), sources, tmp_path / "arm.cert")
 
 
 def test_clearance_padding_held_objects_and_planes_are_part_of_the_claim(tmp_path, capsys):

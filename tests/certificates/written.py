@@ -20,7 +20,7 @@ class Written:
     def __init__(self, robot, scene, start, goal, clearance=0.0):
         self.world = er.ArmWorld(robot, scene, clearance=clearance)
         self.path = er.plan(self.world, start, goal).path
-        self.sources = Sources.named(robot, scene, None, None)
+        self.sources = Sources.named(robot, scene)
         self.file = Path(mkdtemp()) / "plan.cert"
         certify(self.world, self.path, self.sources, self.file)
         self.data = self.file.read_bytes()
@@ -77,5 +77,5 @@ def joined(lines, waypoints, packed, directions):
 
 def with_digest(data, inputs: Inputs):
     """Return a certificate as if it was written for these inputs."""
-    lines, *rest = parts_of(data)
-    return joined([f"inputs {inputs.digest}" if line.startswith("inputs ") else line for line in lines], *rest)
+    head, _, rest = data.partition(b"inputs ")
+    return head + b"inputs " + inputs.digest.encode() + rest[64:]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -32,6 +33,10 @@ class Certificate:
     held: dict[str, float] = field(default_factory=dict)
     clearance: float = 0.0
     padding: dict[str, float] = field(default_factory=dict)
+    robot: str | None = None
+    """Digest of the file of the robot that it carries, None where it carries none; `scene` alike."""
+    scene: str | None = None
+    carried: tuple[bytes, ...] = ()
 
 
 def read_certificate(data: bytes) -> Certificate:
@@ -53,18 +58,22 @@ def _certificate(said: dict[str, list[str]], body: bytes) -> Certificate:
     once = ("inputs", "degree", "motions", "answers", "directions")
     for key in once:
         demand(len(said.get(key, ())) == 1, f"its header must have one line {key!r}")
-    demand(said.keys() <= {*once, "joint", "held", "clearance", "padding"}, "its header has lines that are not known")
+    known = {*once, "joint", "held", "clearance", "padding", "robot", "scene"}
+    demand(said.keys() <= known, "its header has lines that are not known")
     joints, clearance = said.get("joint", []), said.get("clearance", ["0"])
-    demand(joints and len(set(joints)) == len(joints) and len(clearance) == 1, "its header has a line twice, or none")
+    robot, scene = (said.get(key, [None]) for key in ("robot", "scene"))
+    demand(joints and len(set(joints)) == len(joints), "its header names a joint twice, or none")
+    demand(len(clearance) == len(robot) == len(scene) == 1, "its header has a line twice")
     degree, motions, answers, directions = (_count(said[key][0]) for key in once[1:])
     demand(degree in (1, 2) and 0 < motions < MOST_MOTIONS, "it has no path, or too long a one")
     sizes = [8 * (degree * motions + 1) * len(joints), (answers + 2) // 3, 12 * directions]
-    demand(len(body) == sum(sizes), "its length is not what its header says")
+    carries = robot != [None] or scene != [None]
+    demand(len(body) == sum(sizes) or (carries and len(body) > sum(sizes)), "its length is not what its header says")
     points = np.frombuffer(body[: sizes[0]], "<f8").reshape(-1, len(joints))
     demand(np.isfinite(points).all() and np.abs(points).max() <= FARTHEST, "a waypoint is no number, or too large")
     first, last = points[:-degree:degree], points[degree::degree]
     middle = points[1::2] if degree == 2 else 0.5 * (first + last)
-    given = np.frombuffer(body[sizes[0] + sizes[1] :], "<f4").reshape(-1, 3).astype(float)
+    given = np.frombuffer(body[sizes[0] + sizes[1] : sum(sizes)], "<f4").reshape(-1, 3).astype(float)
     demand(np.isfinite(given).all() and not (np.abs(given) > 2.0).any(), "a direction is no number, or too long")
     return Certificate(
         inputs=said["inputs"][0],
@@ -75,7 +84,19 @@ def _certificate(said: dict[str, list[str]], body: bytes) -> Certificate:
         held=_named(said.get("held", [])),
         clearance=_length(clearance[0]),
         padding={link: _length(value) for link, value in _named(said.get("padding", [])).items()},
+        robot=robot[0],
+        scene=scene[0],
+        carried=tuple(_files(body[sum(sizes) :])),
     )
+
+
+def _files(data: bytes) -> Iterator[bytes]:
+    """Yield the files at the end of a certificate, each after its length in 8 bytes."""
+    while data:
+        size = int.from_bytes(data[:8], "little")
+        demand(len(data) >= 8 + size, "a file that it carries is cut off")
+        yield data[8 : 8 + size]
+        data = data[8 + size :]
 
 
 def _count(text: str) -> int:

@@ -39,6 +39,8 @@ class Inputs:
     robot: Robot
     scene: Scene
     digest: str
+    carried: tuple[tuple[str, bytes], ...] = ()
+    """Names and contents of the files that the certificate carries."""
 
 
 @dataclass(frozen=True)
@@ -51,11 +53,33 @@ class Claim:
     silent: tuple[str, ...]
 
 
-def read_inputs(robot: Path, scene: Path, srdf: Path | None, packages: dict[str, Path]) -> Inputs:
-    """Return what the files of a robot and a scene say; BadInput where one cannot be read."""
-    files = Files()
-    read = read_robot(files, robot, srdf, packages), read_scene(files, scene)
-    return Inputs(*read, files.digest)
+def read_inputs(
+    robot: Path | None,
+    scene: Path | None,
+    srdf: Path | None,
+    packages: dict[str, Path],
+    certificate: Certificate | None = None,
+) -> Inputs:
+    """Return what the files of a robot and a scene say; BadInput where one cannot be read.
+
+    Those that a certificate carries stand for them, and a file that is given besides must be what they were made of.
+    """
+    files = Files(() if certificate is None else certificate.carried)
+    own = (None, None) if certificate is None else (certificate.robot, certificate.scene)
+    files.own = own[0] is not None
+    if own[0] is not None:
+        files.require_same(robot, own[0])
+        robot, srdf = Path("robot.urdf"), Path("robot.srdf")
+    require(robot is not None, "the certificate carries no robot: give its URDF")
+    read = read_robot(files, Path(robot or ""), srdf, packages)
+    files.own = own[1] is not None
+    if own[1] is not None:
+        files.require_same(scene, own[1])
+        scene = Path("scene.yaml")
+    require(scene is not None, "the certificate carries no scene: give its file")
+    around = read_scene(files, Path(scene or ""))
+    demand(files.is_done, "it carries more files than it needs")
+    return Inputs(read, around, files.digest, tuple(files.taken))
 
 
 def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
@@ -155,6 +179,9 @@ def _silent(
         else "neighbours, as no SRDF disables any",
         "allowed contacts": ", ".join(f"{obstacle} with {link}" for obstacle, link in sorted(scene.allowed)),
         "that other joints are where they are held": held or "at 0",
+        "that what the certificate carries is the robot, or the scene, that is meant": ", ".join(
+            name for name in ("robot", "scene") if getattr(certificate, name) is not None
+        ),
         "that the robot is built, calibrated, placed and controlled as the files say": "and when it is where",
     }
     return tuple(f"{key}: {value}" for key, value in lines.items() if value)

@@ -43,16 +43,22 @@ def main(words: Sequence[str] | None = None) -> int:
     """Check a certificate; return 0 if it is accepted, 1 if it is refused, 2 if an input cannot be read."""
     parser = argparse.ArgumentParser(prog="evenroad-verify", description="Check that a path is proved free of contact.")
     parser.add_argument("certificate", type=Path, help="the certificate")
-    parser.add_argument("robot", type=Path, help="the robot's URDF")
-    parser.add_argument("scene", type=Path, help="the scene, a YAML of evenroad")
-    parser.add_argument("srdf", type=Path, nargs="?", help="the robot's SRDF, if the certificate was written with one")
+    own = "; - or none: the one that the certificate carries"
+    parser.add_argument("robot", type=_file, nargs="?", help=f"the robot's URDF{own}")
+    parser.add_argument("scene", type=_file, nargs="?", help=f"the scene, a YAML of evenroad{own}")
+    parser.add_argument("srdf", type=_file, nargs="?", help="the robot's SRDF, if the certificate was written with one")
+    parser.add_argument("--write", type=Path, metavar="FOLDER", help="write the files that the certificate carries")
     parser.add_argument("--package", action="append", default=[], help="NAME=FOLDER of a ROS package with meshes")
     parser.add_argument("--path", type=Path, help="a CSV of waypoints, which must be those of the certificate")
     asked = parser.parse_args(words)
     packages = {name: Path(folder) for name, _, folder in (each.partition("=") for each in asked.package)}
     try:
         data = asked.certificate.read_bytes()
-        proved = verify(data, read_inputs(asked.robot, asked.scene, asked.srdf, packages))
+        inputs = read_inputs(asked.robot, asked.scene, asked.srdf, packages, read_certificate(data))
+        for name, content in inputs.carried if asked.write else ():
+            asked.write.mkdir(parents=True, exist_ok=True)
+            (asked.write / name).write_bytes(content)
+        proved = verify(data, inputs)
         if asked.path is not None:
             _require_same_path(proved.certificate, asked.path)
     except Refused as error:
@@ -63,6 +69,10 @@ def main(words: Sequence[str] | None = None) -> int:
         return BAD_INPUT
     print("\n".join(_lines(proved)))
     return ACCEPTED
+
+
+def _file(word: str) -> Path | None:
+    return None if word == "-" else Path(word)
 
 
 def _require_same_path(certificate: Certificate, path: Path) -> None:

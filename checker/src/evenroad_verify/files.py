@@ -4,25 +4,49 @@ from __future__ import annotations
 
 import hashlib
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 from pathlib import Path
 
-from evenroad_verify.errors import require
+from evenroad_verify.errors import demand, require
 
 
 class Files:
-    """Reads files and keeps the digest of all of them, in the order in which they are asked for."""
+    """Reads files and keeps the digest of all of them, in the order in which they are asked for.
 
-    def __init__(self) -> None:
+    While `own` holds, the next one that the certificate carries stands for each file; `taken` are name and bytes of
+    these.
+    """
+
+    def __init__(self, carried: Sequence[bytes] = ()) -> None:
+        self.own = False
+        self.taken: list[tuple[str, bytes]] = []
+        self._carried = list(carried)
         self._seen: dict[Path, bytes] = {}
         self._digest = hashlib.sha256()
 
     def read(self, path: Path) -> bytes:
         """Return what a file holds."""
-        require(path.is_file(), f"there is no file {path}")
-        data = self._seen[path] if path in self._seen else path.read_bytes()
-        self._seen[path] = data
+        if self.own:
+            demand(self._carried, f"it does not carry {path.name}")
+            data = self._carried.pop(0)
+            self.taken.append((path.name, data))
+        else:
+            require(path.is_file(), f"there is no file {path}")
+            data = self._seen[path] if path in self._seen else path.read_bytes()
+            self._seen[path] = data
         self._digest.update(hashlib.sha256(data).digest())
         return data
+
+    @property
+    def is_done(self) -> bool:
+        """Whether all that the certificate carries was read."""
+        return not self._carried
+
+    def require_same(self, path: Path | None, digest: str) -> None:
+        """Raise Refused where a file, if there is one, is not that which the writer has read."""
+        if path is not None:
+            same = path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == digest
+            demand(same, f"it carries what it is about, and that was not read from {path}: write - in its place")
 
     @property
     def digest(self) -> str:

@@ -59,11 +59,11 @@ def read_robot(files: Files, urdf: Path, srdf: Path | None, packages: dict[str, 
     root = parse_xml(data, urdf.name)
     require(root.tag == "robot" and b"<xacro:" not in data, f"{urdf.name} is no URDF, or a xacro")
     names = [attribute(link, "name") for link in root.findall("link")]
-    joints = [each for element in root.findall("joint") for each in _joints(element, names)]
+    joints = [_joint(element) for element in root.findall("joint")]
     links, ordered = _tree(names, joints)
     disabled = None
-    if srdf is not None:
-        disabled = _disabled(parse_xml(files.read(srdf), srdf.name), links)
+    if srdf is not None and (said := files.read(srdf)):
+        disabled = _disabled(parse_xml(said, srdf.name), links)
     shapes: dict[str, list[Shape]] = {}
     for link in root.findall("link"):
         for body in link.findall("collision"):
@@ -71,23 +71,13 @@ def read_robot(files: Files, urdf: Path, srdf: Path | None, packages: dict[str, 
     return Robot(links, ordered, {link: some for link, some in shapes.items() if some}, disabled or None)
 
 
-def _joints(element: ET.Element, links: list[str]) -> list[Joint]:
+def _joint(element: ET.Element) -> Joint:
     name, kind = attribute(element, "name"), attribute(element, "type")
     parent, child = (attribute(required(element, tag), "link") for tag in ("parent", "child"))
     along = only(element, "axis")
     axis = numbers("1 0 0" if along is None else along.get("xyz", "1 0 0"), 3)
-    if kind == "planar":
-        # Two slides and a turn, about z alone; all are at 0 where a certificate does not name them.
-        require(along is None or axis.tolist() == [0, 0, 1], f"the planar joint {name} is not about z")
-        links += (between := [f"{name}/x", f"{name}/y"])
-        names, ends = [*between, f"{name}/theta"], [parent, *between, child]
-        origins = [_origin(element), *[(np.eye(3), np.zeros(3))] * 2]
-        kinds, axes = ("prismatic", "prismatic", "continuous"), np.eye(3)
-        return [
-            Joint(names[i], kinds[i], ends[i], ends[i + 1], origins[i], axes[i], -1e3, 1e3, names[i], 1.0, 0.0)
-            for i in range(3)
-        ]
-    kind = "fixed" if kind == "floating" else kind
+    # Joints of several coordinates stand still at 0: a certificate that moves them carries a URDF without them.
+    kind = "fixed" if kind in ("planar", "floating") else kind
     require(kind in KINDS, f"the joint {name} is of the unknown kind {kind}")
     length = float(np.linalg.norm(axis))
     require(length > 1e-9 or kind == "fixed", f"the axis of {name} is zero")
@@ -100,7 +90,7 @@ def _joints(element: ET.Element, links: list[str]) -> list[Joint]:
         leader = attribute(mimic, "joint")
         factor, offset = number(mimic.get("multiplier", "1")), number(mimic.get("offset", "0"))
     axis = axis / max(length, 1e-9)
-    return [Joint(name, kind, parent, child, _origin(element), axis, lower, upper, leader, factor, offset)]
+    return Joint(name, kind, parent, child, _origin(element), axis, lower, upper, leader, factor, offset)
 
 
 def _origin(element: ET.Element) -> Pose:
@@ -140,7 +130,8 @@ def _body(files: Files, body: ET.Element, urdf: Path, packages: dict[str, Path])
         shape = primitive(kind, said)
         return [] if shape is None else [shape.at(at)]
     scale = said.get("scale", "1").split()
-    file = _mesh_file(attribute(geometry[0], "filename"), urdf, packages)
+    name = attribute(geometry[0], "filename")
+    file = Path(name) if files.own else _mesh_file(name, urdf, packages)
     return [
         each.at(at)
         for each in read_mesh(files.read(file), file.name, numbers(scale * 3 if len(scale) == 1 else scale, 3))

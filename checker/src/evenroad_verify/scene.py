@@ -11,7 +11,7 @@ import numpy as np
 from evenroad_verify.errors import Pose, number, numbers, require
 from evenroad_verify.files import Files
 from evenroad_verify.meshes import read_mesh
-from evenroad_verify.shapes import DIMENSIONS, Shape, hull, pose_of, primitive
+from evenroad_verify.shapes import DIMENSIONS, Shape, balls, hull, pose_of, primitive
 from evenroad_verify.yaml_subset import parse_yaml
 
 GROUND = 100.0
@@ -104,7 +104,7 @@ def _named(value: object) -> Iterator[tuple[str, dict[str, object]]]:
 
 def _obstacle(files: Files, path: Path, name: str, entry: dict[str, object]) -> Obstacle:
     kind, pose = str(entry.get("shape")), _pose(entry)
-    of_kind = {"mesh": {"file", "scale", "convex"}, "plane": set[str]()} | {
+    of_kind = {"mesh": {"file", "scale", "convex"}, "cloud": {"file", "radius"}, "plane": set[str]()} | {
         key: set(each) for key, each in DIMENSIONS.items()
     }
     require(kind in of_kind, f"{name} is of the unknown shape {kind}")
@@ -121,6 +121,8 @@ def _obstacle(files: Files, path: Path, name: str, entry: dict[str, object]) -> 
         shapes = read_mesh(files.read(file), file.name, scales)
         if entry.get("convex") == "true":
             shapes = [hull(shapes)]
+    elif kind == "cloud":
+        shapes = [balls(files.read(path.parent / str(entry.get("file"))), number(entry.get("radius", "0.01")))]
     else:
         shape = primitive(kind, entry)
         require(shape is not None, f"{name} has no size")

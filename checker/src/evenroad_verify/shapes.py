@@ -101,3 +101,10 @@ def surface(triangles: Floats, at: Pose, scale: Floats) -> Shape:
 def hull(shapes: list[Shape]) -> Shape:
     """Return the hull of some shapes as one element."""
     return _element(np.concatenate([each.points for each in shapes]))
+
+
+def balls(data: bytes, radius: float) -> Shape:
+    """Return balls about the points of a text, three numbers a line, each a convex element."""
+    rows = [numbers(line.split(), 3) for line in data.decode("utf-8", "replace").splitlines()]
+    require(rows and radius > 0.0, "a cloud has no points, or its balls no radius")
+    return Shape(np.array(rows), np.arange(len(rows)).reshape(-1, 1), radius)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,8 +68,6 @@ class Claim:
     shapes: tuple[Elements, ...]
     nodes: tuple[Node, ...]
     pairs: tuple[tuple[int, int, float, tuple[str, str]], ...]
-    by_srdf: bool
-    """Whether an SRDF says which links may touch."""
 
 
 def tree_of(urdf: RobotDescription, claimed: Claimed) -> Tree:
@@ -121,7 +119,7 @@ def claim_of(urdf: RobotDescription, scene: Scene, claimed: Claimed) -> Claim:
         for j in range(i + 1, len(names)):
             if placement[name][0] != placement[names[j]][0] and frozenset((name, names[j])) not in touching:
                 pairs.append((first + i, first + j, 0.0, (name, names[j])))
-    return Claim(tree, tuple(shapes), tuple(nodes), tuple(pairs), bool(claimed.disabled))
+    return Claim(tree, tuple(shapes), tuple(nodes), tuple(pairs))
 
 
 def _around(
@@ -151,18 +149,22 @@ def _around(
 
 def _touching(
     urdf: RobotDescription, scene: Scene, bodies: Mapping[str, list[int]], claimed: Claimed
-) -> set[frozenset[str]] | frozenset[frozenset[str]]:
+) -> set[frozenset[str]]:
     """Return pairs of links that may touch: those of the SRDF, else neighbours; and what a held body may."""
     touching = {frozenset((held.name, link)) for held in scene.attached for link in (held.link, *held.touches)}
-    if claimed.disabled:
-        return touching | claimed.disabled
+    return touching | (claimed.disabled or neighbours(urdf, bodies))
+
+
+def neighbours(urdf: RobotDescription, bodied: Container[str]) -> set[frozenset[str]]:
+    """Return pairs of a link and the next one above it with a body where exactly one joint moves between them."""
+    found = set[frozenset[str]]()
     above = {joint.child: joint for joint in urdf.joints}
     for name in urdf.links:
         link, moving = name, 0
         while link in above:
             moving += above[link].kind != "fixed"
             link = above[link].parent
-            if link in bodies:
-                touching |= {frozenset((name, link))} if moving == 1 else set()
+            if link in bodied:
+                found |= {frozenset((name, link))} if moving == 1 else set()
                 break
-    return touching
+    return found

@@ -13,7 +13,7 @@ from evenroad._native.certificates import ShapeTables
 from evenroad.errors import NotAvailable
 from evenroad.geometry.mesh_file import load_mesh
 from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Shape, Sphere
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ def elements_of(body: Shape, at: Pose, *, convex: bool = False, wider: float = 0
     """Return the elements of a body in the frame in which `at` is its parent's pose.
 
     With `convex` a mesh is one element, its hull; every element grows by `wider` [m].  Raises NotAvailable for a body
-    that no certificate speaks of, as a cloud.
+    that no certificate speaks of.
     """
     pose = at @ body.pose
     axis = pose.matrix[:3, 2]
@@ -50,6 +50,9 @@ def elements_of(body: Shape, at: Pose, *, convex: bool = False, wider: float = 0
         return Elements(pose.apply(endpoints), np.arange(2).reshape(1, 2), wider, body.radius, (x, y, z))
     if isinstance(body, Capsule):
         return Elements(pose.apply(np.array([body.a, body.b])), np.arange(2).reshape(1, 2), body.radius + wider)
+    if isinstance(body, PointCloud):
+        rows = np.arange(len(body.points), dtype=np.int64).reshape(-1, 1)
+        return Elements(pose.apply(body.points), rows, body.radius + wider)
     if isinstance(body, Mesh):
         mesh = load_mesh(body.source) if isinstance(body.source, Path) else body.source
         corners = pose.apply((mesh.vertices * body.scale)[mesh.triangles].reshape(-1, 3))

@@ -16,6 +16,7 @@ from evenroad.cli.sampler import SamplerOptions, speaks_of_points
 from evenroad.errors import InvalidValue
 
 if TYPE_CHECKING:
+    from evenroad.certificates.sources import Sources
     from evenroad.loading.model import RobotModel
 
 OF_ROBOTS: dict[str, tuple[str, ...]] = {
@@ -43,7 +44,7 @@ class PlanOptions(SamplerOptions):
             *("start_velocity", "goal_velocity", "deviation", "step", "controller_joints"),
         ),
         **OF_ROBOTS,
-        "results": ("out", "no_picture", "csv", "certificate"),
+        "results": ("out", "no_picture", "csv", "certificate", "embed"),
     }
     """Title of a group of the help -> its options."""
     planner: ClassVar[str]
@@ -167,6 +168,14 @@ class RobotOptions:
             "padding": self._padding(),
         }
 
+    def sources(self, robot: str, scene: Path | None, embed: bool) -> Sources:
+        """Return the files that a certificate is about."""
+        from evenroad.certificates.sources import Sources
+
+        made = self.options()
+        reading = {name: made[name] for name in ("packages", "arguments", "use_visuals", "upright_meshes")}
+        return Sources.named(robot, scene, self.srdf, embed=embed, **reading)
+
     def read_robot(self, source: str) -> RobotModel:
         """Return a robot and how it was made."""
         from evenroad.loading.load import load_model
@@ -262,6 +271,8 @@ class PlanArm(PlanOptions, RobotOptions):
     """Distance to keep from all obstacles, 0 to 1, in metres; not from the arm itself."""
     certificate: Path | None = None
     """Write a certificate here: a proof that the path is free, which evenroad-verify checks without evenroad."""
+    embed: bool = False
+    """The certificate carries robot and scene, too; else it does only where a checker does not read their format."""
     trajectory: Repeatable[tuple[Path, ...]] = ()
     """Write a trajectory: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a bag), .script (URScript,
     by the clock) or .movej.script (waypoint by waypoint).  You can give several."""

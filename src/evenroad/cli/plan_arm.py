@@ -101,9 +101,11 @@ def plan_arm(plan: PlanArm) -> int:
 def _require_certifiable(plan: PlanArm, inputs: Iterable[Path]) -> None:
     """Raise InvalidValue for a certificate of bodies that the robot's URDF lacks, or in place of an input."""
     if plan.certificate is None:
+        if plan.embed:
+            raise InvalidValue("--embed goes with --certificate: which carries robot and scene")
         return
-    if plan.bodies is not None or plan.use_visuals:
-        raise InvalidValue("--certificate goes without --bodies and --use-visuals: it is about the URDF's own bodies")
+    if plan.bodies is not None:
+        raise InvalidValue("--certificate goes without --bodies: it is about the bodies of the robot's file")
     if plan.certificate.resolve() in {path.resolve() for path in inputs}:
         raise InvalidValue(f"--certificate would overwrite the file {plan.certificate}")
     require_writable_folder(plan.certificate)
@@ -111,10 +113,12 @@ def _require_certifiable(plan: PlanArm, inputs: Iterable[Path]) -> None:
 
 def _certified(plan: PlanArm, result: PlanResult) -> list[tuple[str, str]]:
     """Write the certificate of a path, if there is one and it is wanted; return its row for the table."""
-    if plan.certificate is None or not result.solved:
+    if plan.certificate is None or not result.solved or result.path is None:
         return []
-    packages = plan.options()["packages"]
-    result.certify(plan.certificate, robot=plan.robot, scene=plan.world, srdf=plan.srdf, **packages)
+    # Imported late: most plans are written without one.
+    from evenroad.certificates.certify import certify
+
+    certify(result.world, result.path, plan.sources(plan.robot, plan.world, plan.embed), plan.certificate)
     return [("certificate", f"{plan.certificate}, which evenroad-verify checks")]
 
 

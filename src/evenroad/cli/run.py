@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from evenroad.trajectory import Trajectory
 
 
+_WRITTEN = ("out", "certificate", "embed")
+"""Options about files that are written: no part of the record of a task."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class RunTask(RobotOptions):
     """Plan a task: motions, and what a gripper does between them; write one trajectory.
@@ -40,6 +44,11 @@ class RunTask(RobotOptions):
     """A scene's file or name, in place of that of the task."""
     out: Annotated[tuple[Path, ...], "-o"] = ()
     """Files for the trajectory: .json, .csv, .yaml (ROS 2), .mcap (a bag), .script or .movej.script (URScript)."""
+    certificate: Path | None = None
+    """Write a certificate of each motion that evenroad-verify checks: FILE.cert becomes FILE.1.cert and so on; each
+    carries what the robot holds and what is around it then."""
+    embed: bool = False
+    """The certificates carry the robot, too."""
     speed: float = 1.0
     """Share of the velocity limits, > 0 and at most 1."""
     limits: Path | None = None
@@ -59,6 +68,12 @@ class RunTask(RobotOptions):
             if file.resolve() in {each.resolve() for each in (self.task, self.limits) if each is not None}:
                 raise InvalidValue(f"--out {file} would overwrite what is read")
             require_writable_folder(file)
+        if self.certificate is not None:
+            if self.bodies is not None:
+                raise InvalidValue("--certificate goes without --bodies: it is about the bodies of the robot's file")
+            require_writable_folder(self.certificate)
+        elif self.embed:
+            raise InvalidValue("--embed goes with --certificate: which carries the robot")
         world, done = self.planned()
         for file in self.out:
             # The trajectory of an earlier run must not pass for this one.
@@ -71,20 +86,43 @@ class RunTask(RobotOptions):
                 ("trajectory", f"{trajectory.duration:.3f} s, {len(trajectory.times)} states, {trajectory.proof}")
             )
             rows += [("files", ", ".join(map(str, self.out)))] if self.out else []
+            rows += self._certified(done)
         print_table(rows)
         return 0 if done.solved else 1
+
+    def _certified(self, done: TaskResult) -> list[tuple[str, str]]:
+        """Write the certificates of a task, if they are wanted; return their row for the table."""
+        if self.certificate is None:
+            return []
+        # Imported late: most tasks are run without them.
+        from evenroad.certificates.certify import certify
+
+        sources = self.sources(self._robot(), None, self.embed)
+        moving = [part for part in done.parts if part.cost and part.path is not None]
+        files = [self.certificate.with_suffix(f".{n + 1}{self.certificate.suffix}") for n in range(len(moving))]
+        for part, file in zip(moving, files, strict=True):
+            assert part.path is not None, "only of a motion that was found"
+            certify(part.world, part.path, sources, file)
+        named = f"{files[0]} to {files[-1]}" if len(files) > 1 else "".join(map(str, files))
+        return [("certificates", f"{named or 'none: the arm stays where it is'}, which evenroad-verify checks")]
 
     def planned(self) -> tuple[ArmWorld, TaskResult]:
         """Return the world and the plan of the task: the same for the same options."""
         from evenroad.task.task_file import load_task
 
-        said = load_task(self.task)
-        source = said.robot if self.robot is None else self.robot
-        if source is None:
-            raise InvalidValue(f"{self.task} names no robot: give --robot")
+        said, source = load_task(self.task), self._robot()
         scene = as_scene(said.scene if self.scene is None else self.scene) if said.scene or self.scene else Scene()
         world = ArmWorld(in_scene(self.read_robot(source).robot, scene), scene)
         return world, said.task.plan(world, said.start, seconds=self.time, rng=self.seed)
+
+    def _robot(self) -> str:
+        """Return the file or name of the robot."""
+        from evenroad.task.task_file import load_task
+
+        source = load_task(self.task).robot if self.robot is None else self.robot
+        if source is None:
+            raise InvalidValue(f"{self.task} names no robot: give --robot")
+        return source
 
     def timed(self, world: ArmWorld, done: TaskResult) -> Trajectory:
         """Return the trajectory of a task that is solved."""
@@ -94,13 +132,13 @@ class RunTask(RobotOptions):
 
     def _record(self) -> dict[str, object]:
         """Return the options as plain values, of which `run_task_of` makes them again."""
-        values = {each.name: getattr(self, each.name) for each in fields(self) if each.name != "out"}
+        values = {each.name: getattr(self, each.name) for each in fields(self) if each.name not in _WRITTEN}
         return {name: str(value) if isinstance(value, Path) else value for name, value in values.items()}
 
 
 def run_task_of(record: Json, file: Path) -> RunTask:
     """Return the options of the record in a trajectory's file; BrokenFile where they are none."""
-    options = {each.field: each for each in options_of(RunTask) if each.field != "out"}
+    options = {each.field: each for each in options_of(RunTask) if each.field not in _WRITTEN}
     # Files of earlier versions have no such option.
     record = {"upright_meshes": False, **record} if isinstance(record, dict) else {}
     if record.keys() != options.keys() or not all(_is_value(record[name], options[name]) for name in options):

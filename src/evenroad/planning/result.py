@@ -415,20 +415,32 @@ class PlanResult:
         path, world = self._required("driven")
         return trajectory_of(world, path, limits, speed=speed, **options)
 
-    def certify(self, file: _File, *, robot: _File, scene: _File, srdf: _File | None = None, **packages: _File) -> None:
+    def certify(
+        self,
+        file: _File,
+        *,
+        robot: _File,
+        scene: _File | None = None,
+        srdf: _File | None = None,
+        embed: bool = False,
+        **packages: _File,
+    ) -> None:
         """Write a certificate: a proof that the path is free, which ``evenroad-verify`` checks without evenroad.
 
         Parameters
         ----------
         file, robot, scene, srdf : str or path-like
-            The file to write; the URDF, the scene's file and the SRDF of the plan's world, or names of shipped ones.
+            The file to write; the robot's file, the scene's file and the SRDF of the plan's world, or names of shipped
+            ones.  Without a scene, or where a checker does not read its format, the certificate carries it.
+        embed : bool
+            Whether it carries the files of the robot, too, and so needs no other file.
         **packages : path-like
             Folders of ROS packages with meshes, by their names, beside those that are found.
 
         Raises
         ------
         NotAvailable, InvalidValue
-            If certificates do not cover the robot or scene (no URDF, or a cloud), or if there is no path or no proof.
+            If certificates do not cover the plan, or if there is no path or no proof.
 
         Examples
         --------
@@ -441,7 +453,7 @@ class PlanResult:
         from evenroad.certificates.certify import Sources, certify
 
         path, world = self._required("certified")
-        certify(world, path, Sources.named(robot, scene, srdf, packages), file)
+        certify(world, path, Sources.named(robot, scene, srdf, embed=embed, packages=packages), file)
 
     def _required(self, how: str) -> tuple[Floats, World]:
         """Return path and world, or raise InvalidValue that names the missing one."""
