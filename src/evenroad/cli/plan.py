@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from evenroad.cli.options import Positional, Repeatable, option_names
 from evenroad.cli.read_options import HELP, given_options, require_known_options
-from evenroad.cli.sampler import SamplerOptions, speaks_of_points
+from evenroad.cli.sampler import SamplerOptions
 from evenroad.errors import InvalidValue
 
 if TYPE_CHECKING:
@@ -84,12 +84,6 @@ class PlanOptions(SamplerOptions):
         module, _, name = self.planner.partition(":")
         code: int = getattr(import_module(module), name)(self)
         return code
-
-
-def wants_points(plan: PlanOptions) -> bool:
-    """Return whether an option names points or a connection rule."""
-    given = (plan.n, plan.k, plan.connect_radius)
-    return any(value is not None for value in given) or speaks_of_points(plan)
 
 
 @dataclass(frozen=True, kw_only=True)

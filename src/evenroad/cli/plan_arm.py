@@ -11,11 +11,11 @@ from pathlib import Path
 from evenroad._files import require_writable_folder
 from evenroad._time_limit import within
 from evenroad.cli import interrupted
-from evenroad.cli.plan import PlanArm, wants_points
+from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     KEPT,
-    chosen_budget,
     chosen_planner,
+    chosen_search,
     common_query,
     finish,
     made_of,
@@ -41,21 +41,22 @@ from evenroad.scenes.scene_file import find_scene, load_scene
 def plan_arm(plan: PlanArm) -> int:
     """Plan, write, report with links without collision geometry; return 0 when solved, else 1."""
     # Wrong input is refused before any work.
-    budget, goals, scene = chosen_budget(plan), _goals(plan), load_scene(plan.world)
+    how, goals, scene = chosen_search(plan), _goals(plan), load_scene(plan.world)
     constraints = _constraints(plan)
-    inputs = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies, plan.roadmap)
-    files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
-    require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
-    _require_certifiable(plan, [path for path in inputs if path is not None])
-    if plan.roadmap is not None and (wants_points(plan) or plan.improve):
+    read = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies, plan.roadmap)
+    inputs = [path for path in read if path is not None]
+    files = output_files(plan, inputs, ("json", "csv"), "file")
+    require_trajectory_options(plan, inputs, files.values())
+    _require_certifiable(plan, inputs)
+    if plan.roadmap is not None and (how.n is not None or plan.improve):
         raise InvalidValue("--roadmap goes without points and without --improve: it has milestones of its own")
     kept = None if plan.roadmap is None else load_roadmap(plan.roadmap)
-    if plan.via and (plan.roadmap is not None or plan.improve or wants_points(plan)):
+    if plan.via and (plan.roadmap is not None or plan.improve or how.n is not None):
         raise InvalidValue("--via goes without --roadmap, --improve and points")
     wanted = Wanted(
-        budget=budget, smooth=not plan.raw, rng=plan.seed, certified=plan.certified, constraints=constraints
+        budget=how.budget, smooth=not plan.raw, rng=plan.seed, certified=plan.certified, constraints=constraints
     )
-    with within(budget.seconds):
+    with within(how.budget.seconds):
         problem = arm_problem(
             plan.robot,
             scene,
@@ -74,11 +75,11 @@ def plan_arm(plan: PlanArm) -> int:
             result, make = plan_through(plan, problem, goals)
         else:
             # Constraints have a world of their own kind, with its own planner.
-            own = kept is None and not wants_points(plan) and _keeps(constraints)
-            by = None if own else chosen_planner(plan, problem.world) if kept is None else kept
+            own = kept is None and how.n is None and _keeps(constraints)
+            by = None if own else chosen_planner(plan, how, problem.world) if kept is None else kept
             result, stopped = solve_until_stopped(problem, by)
     model, world, meshes = problem.model, problem.arm, result.meshes
-    record = plan_record(result, _options(plan, problem, result) | common_query(plan)) | {
+    record = plan_record(result, _options(plan, problem, result) | common_query(plan, how)) | {
         "no_body": [] if model is None else list(model.bodiless),
         "drawn_only": [] if model is None else list(model.drawn_only),
         "made_of": made_of(world, robot=plan.robot, scene=str(plan.world)),

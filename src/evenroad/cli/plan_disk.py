@@ -9,17 +9,16 @@ import numpy as np
 
 from evenroad._time_limit import within
 from evenroad.cli import interrupted
-from evenroad.cli.plan import PlanDisk, wants_points
+from evenroad.cli.plan import PlanDisk
 from evenroad.cli.plan_parts import (
-    chosen_budget,
     chosen_planner,
+    chosen_search,
     common_query,
     finish,
     made_of,
     output_files,
     solve_until_stopped,
 )
-from evenroad.cli.sampler import chosen_rule
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.planning.problem import Wanted
@@ -31,9 +30,8 @@ from evenroad.world.gridmap.load import map_files
 
 def plan_disk(plan: PlanDisk) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
-    chosen_rule(plan.k, plan.connect_radius)
-    budget = chosen_budget(plan)
-    if plan.guarantees and not wants_points(plan):
+    how = chosen_search(plan)
+    if plan.guarantees and how.n is None:
         raise InvalidValue("--guarantees goes with a roadmap of points: give their number with -n")
     start = _position("start", plan.start)
     goals = [_position("goal", goal) for goal in plan.goal]
@@ -49,13 +47,13 @@ def plan_disk(plan: PlanDisk) -> int:
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
     made = made_of(gridmap.world(plan.robot_radius, clearance=plan.clearance), map=str(plan.world))
-    if wants_points(plan) and gridmap.unknown.any():
+    if how.n is not None and gridmap.unknown.any():
         # Points are drawn over the rectangle, most of which may be unknown.
         gridmap = gridmap.cropped()
     world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
-    planner = chosen_planner(plan, world, search="full", certify=plan.guarantees)
-    wanted = Wanted(budget=budget, smooth=not plan.raw, certified=plan.certified)
-    with within(budget.seconds):
+    planner = chosen_planner(plan, how, world, search="full", certify=plan.guarantees)
+    wanted = Wanted(budget=how.budget, smooth=not plan.raw, certified=plan.certified)
+    with within(how.budget.seconds):
         problem = read_problem(world, start, goals, Reading(), wanted)
         result, stopped = solve_until_stopped(problem, planner)
     query = {
@@ -64,7 +62,7 @@ def plan_disk(plan: PlanDisk) -> int:
         "clearance": plan.clearance,
         "unknown_is_free": plan.unknown_is_free,
         "rules": plan.rules,
-        **common_query(plan),
+        **common_query(plan, how),
     }
 
     def draw(file: Path) -> None:

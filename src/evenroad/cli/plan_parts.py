@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
 from evenroad._seal import with_digest
 from evenroad._terminal import print_table
-from evenroad.cli.plan import PlanOptions, wants_points
-from evenroad.cli.sampler import chosen_rule, chosen_sampler, draw_points, require_seed
+from evenroad.cli.plan import PlanOptions
+from evenroad.cli.sampler import TAKES, chosen_rule, chosen_sampler, draw_points, require_seed
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
@@ -19,7 +20,7 @@ from evenroad.planning.planners.prm import PRM
 from evenroad.planning.planners.trees import RRTConnect, default_planner
 from evenroad.planning.problem import Interrupted, Planner, Problem
 from evenroad.planning.result import PlanResult
-from evenroad.roadmap import Budget, Roadmap
+from evenroad.roadmap import Budget, Roadmap, Rule
 from evenroad.world import NamesNearest, World
 
 DEFAULT_N = 512
@@ -44,28 +45,38 @@ KEPT = {
 """Options of what a path keeps on its way, as a plan records them, and their types there."""
 
 
-def chosen_planner(plan: PlanOptions, world: World, *, search: str = "lazy", certify: bool = False) -> Planner:
+@dataclass(frozen=True)
+class Search:
+    """How a path is searched and how long: by the default of its world, or along a roadmap of `n` points."""
+
+    budget: Budget
+    n: int | None = None
+    rule: Rule | None = None
+
+
+def chosen_search(plan: PlanOptions) -> Search:
+    """Return how the options say that a path is searched; InvalidValue for some that do not go together."""
+    rule = chosen_rule(plan.k, plan.connect_radius)
+    named = plan.sampler not in (None, "auto") or any(getattr(plan, option) for option in TAKES)
+    if plan.n is None and rule is None and not named:
+        n, seconds = None, RRTConnect.seconds
+        require_seed(plan.seed)
+    else:
+        n, seconds = DEFAULT_N if plan.n is None else plan.n, PRM.seconds
+        chosen_sampler(plan, n)
+        if plan.improve:
+            raise InvalidValue("--improve goes without points: a roadmap of a given number has one best path")
+    return Search(Budget(seconds=seconds if plan.time is None else require_positive("time", plan.time)), n, rule)
+
+
+def chosen_planner(
+    plan: PlanOptions, how: Search, world: World, *, search: str = "lazy", certify: bool = False
+) -> Planner:
     """Return the planner of the options: a roadmap of points, else the default of the world."""
-    if not wants_points(plan):
+    if how.n is None:
         return default_planner(world, improve=plan.improve)
-    points = draw_points(plan, _n(plan), world.space.cube_dim)
-    return PRM(points, rule=chosen_rule(plan.k, plan.connect_radius), search=search, certify=certify)
-
-
-def chosen_budget(plan: PlanOptions) -> Budget:
-    """Return the budget; InvalidValue for options that do not go with the points, or without any."""
-    if wants_points(plan):
-        chosen_sampler(plan, _n(plan))
-    require_seed(plan.seed)
-    if plan.improve and wants_points(plan):
-        raise InvalidValue("--improve goes without points: a roadmap of a given number has one best path")
-    if plan.time is not None:
-        return Budget(seconds=require_positive("time", plan.time))
-    return Budget(seconds=PRM.seconds if wants_points(plan) else RRTConnect.seconds)
-
-
-def _n(plan: PlanOptions) -> int:
-    return DEFAULT_N if plan.n is None else plan.n
+    points = draw_points(plan, how.n, world.space.cube_dim)
+    return PRM(points, rule=how.rule, search=search, certify=certify)
 
 
 def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str], what: str) -> dict[str, Path]:
@@ -92,10 +103,10 @@ def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[s
     return files
 
 
-def common_query(plan: PlanOptions) -> dict[str, object]:
+def common_query(plan: PlanOptions, how: Search) -> dict[str, object]:
     """Return the options that every plan has, for the record."""
     names = ("n", "improve", "certified", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
-    return {name: getattr(plan, name) for name in names} | {"time": chosen_budget(plan).seconds}
+    return {name: getattr(plan, name) for name in names} | {"time": how.budget.seconds}
 
 
 def made_of(world: World, **names: str | None) -> dict[str, dict[str, str | None]]:

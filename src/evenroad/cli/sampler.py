@@ -33,11 +33,6 @@ class SamplerOptions:
     """Seed of everything random; the same command gives the same points."""
 
 
-def speaks_of_points(options: SamplerOptions) -> bool:
-    """Return whether an option names the points to draw."""
-    return options.sampler not in (None, "auto") or any(getattr(options, option) for option in TAKES)
-
-
 def chosen_sampler(options: SamplerOptions, n: int) -> str:
     """Return the name of the sampler; InvalidValue for a bad n, or an option that the sampler does not take."""
     # Imported late: help does not need NumPy.
