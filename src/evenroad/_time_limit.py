@@ -158,5 +158,6 @@ def in_time(rows: npt.NDArray[np.integer], pace: Pace | None = None) -> Iterator
         first += size
         if now() - began >= min(max(_SHARE * (_here.at - began), _LEAST), _MOST):
             pace.size = max(pace.size // 2, 1)
-        elif size <= len(rows):
+        elif first <= len(rows):
+            # A last batch may have had fewer rows: it says nothing of a larger one.
             pace.size = 2 * pace.size

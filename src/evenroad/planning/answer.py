@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import wraps
 from typing import Concatenate, ParamSpec, TypedDict, TypeVar
@@ -11,7 +12,7 @@ from typing import Concatenate, ParamSpec, TypedDict, TypeVar
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._time_limit import BudgetSpent, is_limited, until, within
+from evenroad._time_limit import BudgetSpent, is_limited, look_at_clock, require_time_for, until, within
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.planning.attempt import Attempt, Searched
@@ -63,17 +64,24 @@ def answer(
         by_connector = attempt.edge_cost is None and isinstance(attempt.world, ValidatesPaths)
         result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_connector=by_connector)
         return replace(result, roadmap=graph)
-    so_far, missing = _reach(attempt, searched, counts)
-    made = f"(n={points}, {attempt.rule})"
+    return replace(_no_path(attempt, searched, points, counts), counts=counts, roadmap=graph)
+
+
+def _no_path(attempt: Attempt, searched: Searched, points: int, counts: dict[str, int]) -> PlanResult:
+    """Return the result of a search that found no path, and add to the counts how far it reached, if there is time."""
+    made, limits = f"(n={points}, {attempt.rule})", attempt.problem.budget.text(samples=attempt.grows)
+    try:
+        so_far, missing = _reach(attempt, searched, counts)
+    except BudgetSpent:
+        return failed(attempt, Status.BUDGET_SPENT, f"no path within {limits} {made}")
     if attempt.spent:
-        limits = attempt.problem.budget.text(samples=attempt.grows)
-        result = failed(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
-    else:
-        # With the rule ``complete``, only more points help.
-        wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
-        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt, points)
-        result = failed(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
-    return replace(result, counts=counts, roadmap=graph)
+        return failed(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
+    # With the rule ``complete``, only more points help.
+    wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
+    advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "")
+    with suppress(BudgetSpent):
+        advice += _few_directions(attempt, points)
+    return failed(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
 
 
 def connected(attempt: Attempt, connection: Connection) -> PlanResult:
@@ -141,6 +149,7 @@ def apart_in(problem: Problem, *, quickly: bool = False) -> Apart | None:
     if given is None or not isinstance(world, ArmWorld):
         return world.apart(problem.start, problem.goals, quickly=quickly)
     # Imported late: few plans need the proof.
+    require_time_for("evenroad.infeasibility.proof")
     from evenroad.infeasibility.proof import apart
 
     poses = [goal for goal, _ in given.poses]
@@ -191,11 +200,16 @@ def _with_path(
 
 
 def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:
-    """Return in words how far start and goals reach and what is missing; add the counts."""
+    """Return in words how far start and goals reach and what is missing; add the counts.
+
+    Raises BudgetSpent where the time is over and there are edges to follow.
+    """
     states = searched.states
     if searched.found.reached is not None:
         counts["start_component"] = reached = searched.found.reached - 1
         return f"the tree reached {reached} of {counts['valid']} valid milestones", "but not the goal"
+    if len(states.edges):
+        look_at_clock()
     start = len(states.node_states) - 1 - len(attempt.goals)
     goals = np.arange(start + 1, len(states.node_states), dtype=np.int32)
     is_open = (states.node_states[states.edges] != BLOCKED).all(axis=1) & (states.edge_states != BLOCKED)
@@ -220,6 +234,7 @@ def _few_directions(attempt: Attempt, points: int) -> str:
     if scale is None:
         return ""
     # Imported late: most plans are not on lattices.
+    require_time_for("evenroad.points.measures.short_vectors")
     from evenroad.points.measures.rank_one import least_neighbours
     from evenroad.points.measures.short_vectors import MOST_AXES, lattice_basis
 

@@ -8,7 +8,7 @@ from time import perf_counter as now
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad._time_limit import BudgetSpent, Deadline, until
+from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, until
 from evenroad.planning.connector import Connection, Connector
 from evenroad.planning.problem import Problem
 from evenroad.planning.result import NO_POINTS
@@ -118,18 +118,34 @@ class Attempt:
         return free
 
     def candidates(self, rule: Rule, milestones: Floats) -> EdgeStates:
-        """Return the graph of milestones, start and goals, with the edges of the rule and the links."""
-        space, terminals = self.world.space, self.start_and_goals
-        configurations = np.concatenate([milestones, terminals])
-        n = len(milestones)
+        """Return the graph of milestones, start and goals, with the edges of the rule and the links.
+
+        It has no edges where the time is over before they are found.
+        """
+        configurations = np.concatenate([milestones, self.start_and_goals])
+        edges = np.empty((0, 2), dtype=np.int32)
         with self.watch("neighbours"):
-            edges = rule.edges(configurations, space, terminals=len(terminals))
-            if most := links_among(n, self.links):
-                surroundings, usable = Surroundings(milestones, space), np.ones(n, dtype=np.bool_)
-                near = [nearest_of(surroundings.distances(end), usable, most) for end in terminals]
-                links = [np.stack([rows, np.full(len(rows), n + i)], axis=1) for i, rows in enumerate(near)]
-                edges = ascending(np.concatenate([edges, *links]), len(configurations))
+            try:
+                edges = self._edges(rule, configurations, len(milestones))
+            except BudgetSpent:
+                self.spent = True
         return self.states(configurations, edges)
+
+    def _edges(self, rule: Rule, configurations: Floats, n: int) -> Ints32:
+        """Return the edges among `n` milestones and the start and goals behind them, (m, 2)."""
+        space, terminals = self.world.space, configurations[n:]
+        look_at_clock()
+        edges = rule.edges(configurations, space, terminals=len(terminals))
+        if not (most := links_among(n, self.links)):
+            return edges
+        surroundings, usable = Surroundings(configurations[:n], space), np.ones(n, dtype=np.bool_)
+        links = []
+        for node, end in enumerate(terminals, start=n):
+            look_at_clock()
+            near = nearest_of(surroundings.distances(end), usable, most)
+            links.append(np.stack([near, np.full(len(near), node)], axis=1))
+        look_at_clock()
+        return ascending(np.concatenate([edges, *links]), len(configurations))
 
     def states(self, configurations: Floats, edges: Ints32, cache: StateCache | None = None) -> EdgeStates:
         """Return the states of a graph, by default unknown; the rest of the budget serves to evaluate them."""
@@ -146,7 +162,9 @@ class Attempt:
                 if graph is not None or find is find_any:
                     what = graph or Terminals.last(len(q), goals)
                 else:
+                    look_at_clock()
                     costs, bound = edge_costs(space, q, edges, cost), 1.0 if cost is None else BOUND
+                    look_at_clock()
                     what = search_problem(states, costs, goals, bound=bound)
                 while not confirm(states, found := find(what, states)):
                     pass

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._checks import require_known
 from evenroad._shared import OwnLock
+from evenroad._time_limit import look_at_clock
 from evenroad.planning.answer import answer, connected, in_its_time, shown_apart
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connector import Connector, Smooth
@@ -144,6 +145,7 @@ class WorldRoadmap:
         """Append start and goals to the milestones, and their links to the edges."""
         roadmap, terminals, space = self.roadmap, attempt.start_and_goals, self.world.space
         distances = [roadmap.surroundings.distances(end) for end in terminals]
+        look_at_clock()
         links = self._links(distances, attempt.links)
         n, m = len(roadmap.milestones), len(roadmap.edges)
         nodes, edges = n + len(terminals), m + len(links)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import perf_counter as now
 
 import numpy as np
@@ -82,8 +82,10 @@ def goals_of(
     names: list[str] = []
     poses = []
     began = now()
-    wanted = [as_pose_goal(target, tip, frame) for target in targets if isinstance(target, _POSES)]
-    wanted = [goal if goal.tip else replace(goal, tip=default_tip(world.robot)) for goal in wanted]
+    given = [target for target in targets if isinstance(target, _POSES)]
+    if given and not tip and not all(isinstance(target, PoseGoal) and target.tip for target in given):
+        tip = default_tip(world.robot)
+    wanted = [as_pose_goal(target, tip, frame) for target in given]
     many = len(wanted) >= MANY
     found = reach_quickly(world, wanted, start) if many else [reach(world, goal, start) for goal in wanted]
     with_postures = zip(wanted, found, strict=True)
@@ -95,7 +97,8 @@ def goals_of(
         goal, reached = next(with_postures)
         poses.append((goal, reached))
         rows.append(reached.configurations)
-        names += [str(goal)] * len(reached.configurations)
+        if len(reached.configurations):
+            names += [str(goal)] * len(reached.configurations)
     if many and not names and not found[0].spent:
         # Nothing was reached soon: all are looked at again, in full.
         poses = [(goal, reach(world, goal, start)) for goal, _ in poses]

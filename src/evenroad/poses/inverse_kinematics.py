@@ -203,7 +203,10 @@ def _why_not_both(goal: PoseGoal, reason: Callable[[], str]) -> str:
 
 def _why_blocked(world: Checks, goal: PoseGoal, solved: Floats) -> str:
     """Return, in words, what postures that reach a goal touch, (n, dim)."""
-    touching = Counter(world.explain(q) for q in solved)
+    touching = Counter[str]()
+    for q in solved:
+        look_at_clock()
+        touching[world.explain(q)] += 1
     text = "; ".join(f"{why} in {times}" for why, times in touching.most_common(3))
     return f"{goal} is reached, but only in collision: of {len(solved)} postures found {text}"
 

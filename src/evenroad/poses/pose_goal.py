@@ -152,5 +152,8 @@ def pose_goal_of(text: str, tip: str = "", frame: str = "", *, degrees: bool = F
 
 def as_pose_goal(goal: Pose | PoseGoal, tip: str = "", frame: str = "") -> PoseGoal:
     """Return a goal of a pose, with this tip and frame by default."""
-    goal = PoseGoal(goal) if isinstance(goal, Pose) else goal
-    return replace(goal, tip=goal.tip or tip, frame=goal.frame or frame)
+    if isinstance(goal, Pose):
+        return PoseGoal(goal, tip, frame)
+    tip, frame = goal.tip or tip, goal.frame or frame
+    # A goal is checked whenever it is made, which takes as long as a short plan.
+    return goal if (tip, frame) == (goal.tip, goal.frame) else replace(goal, tip=tip, frame=frame)

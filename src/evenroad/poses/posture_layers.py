@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._time_limit import look_at_clock
 from evenroad.geometry.pose import Pose
 from evenroad.poses.cartesian_path import LONGEST, Followed, Follower
 from evenroad.poses.inverse_kinematics import stages
@@ -56,6 +57,7 @@ def _by_layers(follower: Follower, firsts: Floats, best: Followed) -> Followed:
     costs = [_costs(a, b, int(steps)) for (a, b), steps in zip(pairwise(layers), np.diff(rows), strict=True)]
     pieces: dict[tuple[int, int, int], Floats] = {}
     for _ in range(MOST_TRIED):
+        look_at_clock()
         route = _cheapest(costs)
         if route is None:
             break
@@ -118,6 +120,7 @@ def _postures(follower: Follower, row: int, before: Floats) -> Floats:
 def _distinct(q: Floats, same: float) -> Floats:
     kept: list[Floats] = []
     for row in q:
+        look_at_clock()
         if not kept or np.abs(np.array(kept) - row).max(axis=1).min() >= same:
             kept.append(row)
     return np.array(kept).reshape(-1, q.shape[1])

@@ -13,7 +13,7 @@ MOST = 64
 
 _MOST_TURNING = 8
 """Largest number of joints that are tried in other turns, too."""
-_AT_ONCE = 256
+_AT_ONCE = 64
 """Number of postures of which each is compared with all others at once."""
 
 

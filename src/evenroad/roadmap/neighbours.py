@@ -8,6 +8,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
 from evenroad._native.roadmap import distances_from, k_nearest, k_smallest, pairs_within
+from evenroad._time_limit import look_at_clock
 from evenroad.space import Space
 from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import all_distances
@@ -74,6 +75,7 @@ def _blocks(space: Space, q: Floats, *, earlier: bool = False) -> Iterator[tuple
     n = len(q)
     step = max(1, BLOCK // max(n, 1))
     for begin in range(0, n, step):
+        look_at_clock()
         rows = slice(begin, min(begin + step, n))
         yield rows, all_distances(space, q[rows], q[: rows.stop] if earlier else q)
 

@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._time_limit import look_at_clock
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.constrained_world import keeps_of, kept_line, kept_world
 from evenroad.planning.make_result import led, make_result, solution, unreached
@@ -111,6 +112,7 @@ def choices(
     They are lines of `tip`; default: that of the goals, or the last link.  Nothing depends on where the `last` motion
     of a task ends: without lines its choice is left to the planner.
     """
+    look_at_clock()
     at_start, between = worlds
     if (result := unreached(problem)) is not None:
         yield result
@@ -181,6 +183,7 @@ def _line(
     world: ArmWorld, problem: Problem, step: MoveTo, straight: CartesianLine, q: Floats, length: float
 ) -> Followed:
     """Return the straight line from a configuration, which keeps the constraints of the step."""
+    look_at_clock()
     if not world.valid(q):
         return Followed(q[np.newaxis], world.explain(q))
     line = Followed(q[np.newaxis])

@@ -118,6 +118,7 @@ class _Search:
         return len(self.steps), stage
 
     def _goals(self, number: int, stage: Stage, step: MoveTo, last: bool) -> Iterator[Leg | PlanResult]:
+        look_at_clock()
         # Each line has contacts of its own: what is lifted from a table may not end inside it.
         worlds = stage.with_contacts(stage.near_start), stage.world
         problem = problem_in(self._near_goal(number, stage), stage.q, step.goal, self.reading)
@@ -127,6 +128,7 @@ class _Search:
 
     def _curve(self, number: int, stage: Stage, step: AlongCurve) -> Iterator[Leg | PlanResult]:
         world = self._near_goal(number, stage, stage.near_start)
+        look_at_clock()
         follower = follower_of(step, world, stage.q, self.reading, f"step {number} of the task")
         if follower is None:
             yield Leg(stage.q, motion=Motion((), 0))

@@ -25,7 +25,7 @@ from evenroad.task.steps import Attach, Detach
 
 Contacts = frozenset[tuple[str, str]]
 
-_TO_HOLD = 5e-3
+_TO_HOLD = 8e-3
 """Seconds that it takes to make the tables of a robot that holds something."""
 
 
@@ -53,6 +53,7 @@ class Stage:
         for its fingers; `depths` are those of what is not yet held.  Capsules are wider than fingers: a robot without
         true shapes may have them in what it takes.
         """
+        look_at_clock()
         if not contacts:
             return self.world
         held, scene, robot = {each.name: each for each in self.world.scene.attached}, self.world.scene, self.world.robot
@@ -90,6 +91,7 @@ class Stage:
         link = step.link or default_tip(robot)
         if first and not (taking := self.gripping(step)).valid(self.q):
             raise InvalidValue(f"{where} attaches {step.object!r} where {taking.explain(self.q)}")
+        look_at_clock()
         far = distance_of(found[0].body, robot, self.q, {link, *touching})
         if far > step.reach:
             raise InvalidValue(
@@ -134,6 +136,7 @@ class Stage:
         scene, world = self.world.scene, self.world
         found: list[str] = []
         for each in scene.obstacles:
+            look_at_clock()
             alone = replace(scene, obstacles=(each,), allowed=frozenset(a for a in scene.allowed if a[1] == each.name))
             spared = replace(alone, allowed=alone.allowed | {(held, each.name)})
             if not replace(world, scene=alone).valid(self.q) and replace(world, scene=spared).valid(self.q):
@@ -188,5 +191,6 @@ def _world(stage: Stage, scene: Scene) -> ArmWorld:
             if held.name in stage.depths:
                 as_capsule = not robot.holding(held).shapes
                 robot = _holding_core(robot, held, stage.depths[held.name], as_capsule=as_capsule)
+            look_at_clock(_TO_HOLD)
             robot = robot.holding(held)
     return replace(stage.world, robot=robot, scene=scene)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats
 from evenroad._call import explains_calls
 from evenroad._checks import require_count, require_known
-from evenroad._time_limit import seconds_left
+from evenroad._time_limit import BudgetSpent, seconds_left
 from evenroad.errors import InvalidValue
 from evenroad.planning.answer import answer, in_its_time
 from evenroad.planning.attempt import Attempt, Searched
@@ -109,11 +109,14 @@ class GrowingPRM:
                 if not growth.has_time():
                     break
                 points = _draw(sampler, min(2 * points.n, budget.samples), problem, points)
+        except BudgetSpent:
+            if not growth.stages:
+                raise
         except KeyboardInterrupt:
             if growth.best is None:
                 raise
-            raise Interrupted(growth.result(points.n)) from None
-        return growth.result(points.n)
+            raise Interrupted(growth.result()) from None
+        return growth.result()
 
 
 class _Growth:
@@ -134,7 +137,10 @@ class _Growth:
         return seconds_left() > LONGER * self.prepared
 
     def take(self, points: PointSet) -> bool:
-        """Search with these points, which begin with earlier ones; return whether the budget was enough."""
+        """Search with these points, which begin with earlier ones; return whether the budget was enough.
+
+        Raises BudgetSpent where the time is over before the points are placed; earlier stages stay.
+        """
         attempt, terminals = self.attempt, len(self.attempt.start_and_goals)
         samples = attempt.world.space.from_cube(points.points[self.drawn :])
         drawn = now() - self.began
@@ -184,10 +190,10 @@ class _Growth:
         before = self._costs()[:-1] if self.last.cost is not None else self._costs()
         return bool(before) and min(self._costs()) >= (1.0 - SETTLED) * min(before)
 
-    def result(self, points: int) -> PlanResult:
+    def result(self) -> PlanResult:
         """Return the result: the best path of all stages, with the graph of the last one."""
         self.attempt.spent = True
-        result = answer(self.attempt, self.last, points, best=self.best)
+        result = answer(self.attempt, self.last, self.stages[-1].points, best=self.best)
         counts = result.counts | {"edges_checked": self.attempt.motions_checked}
         return replace(result, counts=counts, stages=tuple(self.stages))
 

@@ -150,10 +150,10 @@ def solve_by(
         return connection
     if connection.goal >= 0 and not improve:
         return connected(attempt, connection)
-    # Imported late: most searches end before.
-    from evenroad.planning.improve import improved
-
     if connection.goal >= 0:
+        # Imported late: most searches end before.
+        from evenroad.planning.improve import improved
+
         result = connected(attempt, connection)
         return improved(attempt, connector, result, variant)
     if connection.spent or (left := attempt.left()) is None:

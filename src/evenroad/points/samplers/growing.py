@@ -124,6 +124,7 @@ def _searched(d: int, digits: int) -> Ints:
 
 def _best(found: Ints, scores: Floats, digit: int, tried: int, kept: int) -> tuple[Ints, Floats]:
     """Return the best extensions, (m, d), of vectors of one digit less, best first, and their scores, (m,)."""
+    look_at_clock()
     d = found.shape[1]
     if 2 ** (d - 1) <= tried:
         bits = np.arange(2 ** (d - 1))[:, np.newaxis] >> np.arange(d - 1) & 1
