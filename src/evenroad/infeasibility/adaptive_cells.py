@@ -1,8 +1,8 @@
 """Infeasibility proofs by cells that are split only where a path may lead through them.
 
-A cell is blocked if everything in it is, and clear if nothing is.  Of all others nothing is known: those on the paths
-with the fewest of them are split, until start and goal are apart or joined by clear cells (D. Zhu and J.-C. Latombe,
-1991).
+A cell is blocked if every configuration in it is blocked, and clear if none is.  All other cells are unknown.  The
+method splits unknown cells on the paths that have the fewest of them (D. Zhu and J.-C. Latombe, 1991).  It ends when
+start and goal are separated, or joined by clear cells.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from evenroad._time_limit import look_at_clock, require_time_for
 from evenroad.infeasibility.prefix_cells import Bodies, Cells, CellTests, cells_around, first_links
 
 COARSE = 500
-"""Number of cells at the beginning, times the square of the number of joints."""
+"""Number of cells at the beginning, per square of the number of joints."""
 MORE = 8.0
-"""Paths with up to this many times the unknown cells of the best path are split, too."""
+"""Cells of paths with up to this many times the unknown cells of the best path are split, too."""
 CLEAR = 1e-7
 """Cost of a clear cell on a path; that of an unknown cell is 1."""
 DEEPEST = 12
@@ -61,7 +61,7 @@ class _Leaves:
         return -1
 
     def neighbours(self) -> Iterator[tuple[Ints, Ints]]:
-        """Yield pairs of cells that share a side, each pair at least once: the second is no smaller."""
+        """Yield pairs of cells that share a side, each pair at least once; the second is at least as large."""
         levels = np.unique(self.level).tolist()
         rows = {level: np.flatnonzero(self.level == level) for level in levels}
         sorted_keys = {}
@@ -90,10 +90,10 @@ class _Leaves:
 def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: int) -> bool:
     """Return whether the first joints cannot pass from a start, (dim,), to any goal, (g, dim).
 
-    False where that is not shown with `most` cells.
+    It is False if that is not shown with `most` cells.
     """
     require_time_for("scipy.sparse.csgraph")
-    # Imported here, as most plans need no proof.
+    # Imported late: most plans need no proof.
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import dijkstra
 
@@ -105,7 +105,7 @@ def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: 
     level = np.zeros(len(new), dtype=np.int64)
     pace = 0.0
     while True:
-        # A round that would not end in time is not begun: its searches of the graph are not interrupted.
+        # A round that would not end in time does not begin, because its graph searches cannot be interrupted.
         look_at_clock(pace * (len(leaves) + len(new)))
         began = now()
         for depth in np.unique(level).tolist():
@@ -116,13 +116,13 @@ def is_cut_off(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: 
             leaves.add(np.full(int(kept.sum()), depth), here[kept], tests.clear(0.5 * size, middles[kept]))
         terminals = [leaves.find(start[:joints])], [leaves.find(goal[:joints]) for goal in goals]
         if min(map(min, terminals)) < 0:
-            # A free configuration in no cell contradicts the checks.
+            # A free configuration outside of all cells contradicts the checks.
             return False
         one, two = map(np.concatenate, zip(*leaves.neighbours(), strict=True))
         counts = np.where(leaves.clear, CLEAR, 1.0)
         rows, columns = np.concatenate([one, two]), np.concatenate([two, one])
         graph = coo_matrix((counts[columns], (rows, columns)), shape=(len(leaves),) * 2).tocsr()
-        # Pairs of one size come twice.
+        # Pairs of cells of the same size occur twice.
         graph.data = counts[graph.indices]
         away, left = (dijkstra(graph, indices=cells_of, min_only=True) for cells_of in terminals)
         through = away + left - counts

@@ -1,7 +1,7 @@
 """Walls: values of one joint at which two links overlap for all values of the other joints.
 
-No path passes a wall, as a joint takes all values between those of its ends.  So a pair that two joints move on each
-other needs cells of one of them alone.
+No path passes a wall, because a joint takes all values between its first and last.  If two joints move a pair of links
+relative to each other, a proof needs cells of only one of them.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from evenroad.robots.kinematics import link_poses
 from evenroad.robots.robot import Robot
 
 _VALUES = 128
-"""Number of values of a joint that are tried."""
+"""Number of values of a joint to try."""
 _FIRST, _CELLS = 8, 512
-"""Numbers of cells of the other joint that moves the pair: to choose a value, and to prove that it is a wall."""
+"""Numbers of cells of the other joint that moves the pair: `_FIRST` to choose a value, `_CELLS` to prove it a wall."""
 _MOST_POINTS = 8
-"""Largest number of common points of the two links that are tried; each lies in both links in some of these cells."""
+"""Largest number of common points of the two links to try; each lies in both links in some of these cells."""
 _ALONG, _AROUND = 64, 2_000
-"""Cells between two walls along their joint, and all of them."""
+"""Number of cells between two walls along their joint, and number of all cells."""
 
 
 def pieces_between_walls(robot: Robot, start: Floats) -> Iterator[tuple[int, Piece]]:
-    """Yield coordinates that have walls, each with all cells that a path from a place, (dim,), may come to."""
+    """Yield coordinates that have walls, each with all cells that a path from a start, (dim,), may reach."""
     space = joint_space(robot)
     period = space.flat.period
     for k, walls in enumerate(map(np.array, walls_of(robot))):
@@ -53,10 +53,10 @@ def pieces_between_walls(robot: Robot, start: Floats) -> Iterator[tuple[int, Pie
 
 
 def walls_of(robot: Robot) -> tuple[tuple[float, ...], ...]:
-    """Return the walls of each coordinate, in order [rad or m]; kept.
+    """Return the walls of each coordinate, in order [rad or m]; they are cached.
 
-    They are looked for in pairs that are tested, of links that have solid hulls, and which two joints move on each
-    other, or one.
+    The search covers tested pairs of links that have solid hulls, and that one or two joints move relative to each
+    other.
     """
     held = tuple(sorted(robot.held.items()))
     return _walls_of(robot.links, robot.joints, robot.pairs, robot.group, robot.hulls, held)
@@ -83,7 +83,7 @@ def _walls_of(
         moving = _between(robot, first, second) if first in solid and second in solid else []
         for k in {coordinate for _, coordinate in moving}:
             others = [each for each in moving if each[1] != k]
-            # What follows another joint has an axis of its own.
+            # A joint that mimics another one has its own axis.
             if len(others) < 2 and not any(joint.mimic for joint, _ in others):
                 pair = _Pair(robot, (first, second), (solid[first], solid[second]), trees, k, *others)
                 walls[k] += pair.walls()
@@ -91,7 +91,7 @@ def _walls_of(
 
 
 def _between(robot: Robot, first: str, second: str) -> list[tuple[Joint, int]]:
-    """Return the joints that move two links on each other, each with the coordinate that moves it."""
+    """Return the joints that move two links relative to each other, each with its coordinate."""
     above = {joint.child: joint for joint in robot.joints}
     number = {name: k for k, name in enumerate(robot.group)}
     chains = []
@@ -107,7 +107,7 @@ def _between(robot: Robot, first: str, second: str) -> list[tuple[Joint, int]]:
 
 @dataclass(frozen=True, eq=False)
 class _Pair:
-    """Two links that are tested, their solid hulls, the coordinate `k`, and the other joint that moves them, if any."""
+    """Two tested links, their solid hulls, the coordinate `k`, and the other joint that moves them, if any."""
 
     robot: Robot
     links: tuple[str, str]
@@ -126,7 +126,7 @@ class _Pair:
         return [float(value) for value in values[middles] if self._is_wall(value)]
 
     def _in_middles(self, values: Floats, count: int) -> tuple[float, Floats, Ints]:
-        """Return half a cell of the other joint, the links' poses in the middles, and which hulls seem to meet there.
+        """Return half a cell of the other joint, the links' poses in the middles, and the hulls that seem to overlap.
 
         The poses, (n, links, 4, 4), are those of the first value, then those of the next.
         """
@@ -145,15 +145,15 @@ class _Pair:
     def _is_wall(self, value: float) -> bool:
         """Return whether the two have a point in common for all values of the other joint.
 
-        A point that is fixed to one hull moves in the other's frame by no more than its distance from the joint's axis
-        times half a cell, from where it is in the middle of the cell.  If it is so deep in that other hull there, it is
-        in both throughout the cell.
+        Take a point that is fixed to one hull.  Within a cell it moves in the other hull's frame by at most half a cell
+        times its distance from the joint's axis.  If it is deeper than that in the other hull in the middle of the
+        cell, it lies in both hulls throughout the cell.
         """
         half, poses, met = self._in_middles(np.array([value]), _CELLS)
         left = np.ones(len(poses), dtype=np.bool_)
         for _ in range(_MOST_POINTS):
             look_at_clock()
-            # Hulls that seem to meet only say where to look.
+            # Hulls that seem to overlap only show where to look.
             cell = int(left.argmax())
             hulls = [of[number] for of, number in zip(self.solid, met[cell], strict=True)]
             for still, other in (hulls, hulls[::-1]):
@@ -168,7 +168,7 @@ class _Pair:
         return not left.any()
 
     def _speed(self, poses: Floats, hull: Hull, point: Floats) -> float:
-        """Return how fast the other joint moves a point of a hull, (1, 3), past the other link [m/rad or m/m]."""
+        """Return the speed of a point of a hull, (1, 3), past the other link by the other joint [m/rad or m/m]."""
         if self.other is None or self.other[0].kind == "prismatic":
             return 1.0
         joint, link = (poses[self.robot.links.index(link)] for link in (self.other[0].child, hull.link))
@@ -177,7 +177,7 @@ class _Pair:
 
 
 def _deepest(other: Hull, still: Hull, pose: Floats) -> Floats:
-    """Return the point, (1, 3), of a hull that is deepest in another, which has this pose in its frame.
+    """Return the point, (1, 3), of a hull that is deepest in another hull with this pose in its frame.
 
     The proof does not rely on the solver's answer.
     """
@@ -193,7 +193,7 @@ def _deepest(other: Hull, still: Hull, pose: Floats) -> Floats:
 
 
 def _depths(hull: Hull, points: Floats) -> Floats:
-    """Return how deep in a hull points, (n, 3), are; less than 0 outside (n,) [m]."""
+    """Return the depths of points, (n, 3), in a hull; negative outside (n,) [m]."""
     sides = _sides(hull)
     outside: Floats = (points @ sides[:, :3].T + sides[:, 3]).max(axis=1)
     return -outside

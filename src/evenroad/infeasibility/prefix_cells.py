@@ -1,8 +1,8 @@
 """Infeasibility proofs for arms: the first joints alone cannot pass from start to goal.
 
-The first joints move the first links, for any values of the others.  Their ranges are divided into cells.  All of a
-cell is blocked if its middle is, with bodies thinner by the movement within half a cell and by the excess of the
-check's spheres.  The free cells form components, and no path leaves the component that it starts in.
+The first joints move the first links, for any values of the others.  Their ranges are divided into cells.  A cell is
+blocked if its middle is blocked for thinner bodies.  These are thinner by their movement within half a cell, and by the
+excess of the check's spheres.  The other cells form components, and no path leaves the component that it starts in.
 """
 
 from __future__ import annotations
@@ -24,26 +24,26 @@ from evenroad.robots.robot import Robot
 SLACK = 1e-4
 """Extra shrinkage of bodies, besides four times the error of single precision [m]."""
 OF_SHAPES = 4e-4
-"""Extra shrinkage of obstacles where true shapes are tested: four times the most by which convex meshes grow when
-corners are left out [m]."""
+"""Extra shrinkage of obstacles when true shapes are tested [m]: four times the largest growth of convex meshes by
+removed corners."""
 FARTHEST = 0.5
-"""Largest movement of shapes within half a cell for which the cell may count as clear [m]."""
+"""Largest movement of shapes within half a cell of a cell that may count as clear [m]."""
 BEYOND = 1e-4
-"""Distance that cells reach beyond the limits of joints, where rounding may put a configuration [rad or m]."""
+"""Distance of cells beyond the limits of joints, because rounding may put a configuration there [rad or m]."""
 _SLOWEST = 0.05
-"""Smallest speed of links that the size of cells is chosen by [m/rad]."""
+"""Smallest speed of links for the choice of the cells' size [m/rad]."""
 _AT_ONCE = 16_384
-"""Number of cells that are checked at once."""
+"""Number of cells that are checked together."""
 _LABELLED = 5e-8
-"""Time in which a cell's piece is found, which is not interrupted [s]."""
+"""Time per cell to label components, which is not interrupted [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
     """A robot whose `capsules` are tested in a scene, and the largest error of these checks, >= 0 [m].
 
-    `in_scene` returns which configurations, (n, dim), of such a robot are free there: (n,).  A distance besides says by
-    how much the obstacles are smaller [m].  `shapes` are true shapes of the links, and capsules around them.
+    `in_scene` returns which configurations, (n, dim), of such a robot are free there: (n,).  Its second argument is
+    the distance by which obstacles are smaller [m].  `shapes` are true shapes of the links, and capsules around them.
     """
 
     robot: Robot
@@ -56,7 +56,7 @@ class Bodies:
 class Cells:
     """Equal cells of the ranges of some joints: lower ends, upper ends and numbers along each [rad or m].
 
-    `period` is inf where a joint does not wrap.
+    `period` is inf for a joint that does not wrap.
     """
 
     low: Floats
@@ -71,7 +71,7 @@ class Cells:
 
     @property
     def whole(self) -> Bools:
-        """Along which joints, of those that wrap, the cells cover the whole circle."""
+        """Which wrapping joints have cells all around the circle."""
         return self.high - self.low >= self.period * (1.0 - 1e-12)
 
     @property
@@ -81,10 +81,10 @@ class Cells:
         return [low + size * (np.arange(count) + 0.5) for low, size, count in axes]
 
     def cell(self, q: Floats) -> tuple[int, ...] | None:
-        """Return the cell of values, (joints,); None where they are in none."""
+        """Return the cell that contains values, (joints,), or None."""
         q = np.where(np.isfinite(self.period), self.low + np.mod(q - self.low, self.period), q)
         number = np.floor((q - self.low) / self.size).astype(int)
-        # Rounding must not put values on the rim outside.
+        # Rounding must not put values on the boundary outside.
         inside = (number >= -1) & (number <= self.count)
         return tuple(np.clip(number, 0, self.count - 1).tolist()) if inside.all() else None
 
@@ -105,8 +105,8 @@ class Piece:
 def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], most: int) -> Piece | None:
     """Return the cells of the first `len(reach)` joints that a path from a free configuration, (dim,), cannot leave.
 
-    About `most` cells lie around it; `reach` is their extent along each joint, to its limits at most [rad or m].  None
-    where nothing is proved: bodies may be too thin for such cells, or a path may leave them all.
+    About `most` cells lie around it.  `reach` is their extent along each joint, at most to its limits [rad or m].  The
+    result is None if nothing is proved: bodies may be too thin for such cells, or a path may leave them all.
     """
     first = first_links(bodies.robot, len(reach))
     if not first.capsules:
@@ -115,14 +115,14 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
     if bodies.shapes is None and not thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin).capsules:
         return None
     require_time_for("scipy.ndimage")
-    # Imported here, as most plans need no proof.
+    # Imported late: most plans need no proof.
     from scipy.ndimage import label
 
     free = _free_cells(bodies, first, cells)
     look_at_clock(_LABELLED * free.size)
     number = _joined(label(free)[0], cells.whole)
     cell = cells.cell(configuration[: len(reach)])
-    # A configuration in no cell, or in a blocked one, contradicts the check.
+    # A configuration in a blocked cell, or in none, contradicts the check.
     if cell is None or number[cell] == 0:
         return None
     reached = number == number[cell]
@@ -130,7 +130,7 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
     open_below = np.where(np.isfinite(cells.period), ~cells.whole, cells.low > space.low)
     open_above = np.where(np.isfinite(cells.period), ~cells.whole, cells.high < space.high)
     for k in range(len(reach)):
-        # A component must not leave by a side of the cells that is no limit of a joint.
+        # A component must not reach a side of the cells that is not a limit of a joint.
         below, above = np.moveaxis(reached, k, 0)[[0, -1]].reshape(2, -1).any(axis=1)
         if (below and open_below[k]) or (above and open_above[k]):
             return None
@@ -138,9 +138,9 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
 
 
 def first_links(robot: Robot, joints: int) -> Robot:
-    """Return the robot with what its first joints alone move: other joints are held, bodies behind them are removed.
+    """Return the robot with the bodies that its first joints move: other joints are held, later bodies are removed.
 
-    Its limits are a little wider: no cell is blocked for being beyond them.
+    Its limits are a little wider, so that no cell is blocked because it reaches beyond them.
     """
     moved = set(robot.group[joints:])
     while following := {each.name for each in robot.joints if each.mimic and each.mimic.joint in moved} - moved:
@@ -168,37 +168,37 @@ def first_links(robot: Robot, joints: int) -> Robot:
 
 
 def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
-    """Return the robot with bodies so thin that where one touches, it does throughout the cell; some vanish.
+    """Return the robot with bodies so thin that a contact in the middle of a cell implies one throughout; some vanish.
 
     `half`, (dim,), are half the sides of a cell [rad or m].
     """
     kept = []
     for capsule, far in zip(robot.capsules, (_speeds(robot) @ half).tolist(), strict=True):
         radius = capsule.radius - far - slack
-        # Spheres that cover it are larger, unless it is one.
+        # Spheres that cover a capsule are larger than it, unless it is a sphere.
         radius /= 1.0 if capsule.a == capsule.b else LARGEST_EXCESS
         kept += [replace(capsule, radius=radius)] if radius > 0.0 else []
     return replace(robot, capsules=tuple(kept))
 
 
 def _speeds(robot: Robot) -> Floats:
-    """Return how fast joints move the segments of capsules at most, (capsules, dim) [m/rad or m/m]."""
+    """Return the largest speeds at which joints move the segments of capsules, (capsules, dim) [m/rad or m/m]."""
     tree = moving_tree(robot)
     return speed_bounds(tree, [place_capsule(capsule, tree) for capsule in robot.capsules], [], robot)[0]
 
 
 class CellTests:
-    """What is known of cells of the `first` links of some bodies: which are blocked, and which free, throughout.
+    """Tests of cells of a robot's `first` links: which cells are blocked throughout, and which are free throughout.
 
-    Capsules are thinner by how far half a cell moves them.  True shapes stay as they are, and obstacles are smaller by
-    that: so a point of the one stays in the other.
+    Capsules are thinner by their movement within half a cell.  True shapes are not changed; instead, obstacles are
+    smaller by that movement, so that a common point remains one throughout the cell.
     """
 
     def __init__(self, bodies: Bodies, first: Robot) -> None:
         self._bodies, self._first, self._slack = bodies, first, SLACK + 4.0 * bodies.margin
         true, tree = bodies.shapes, moving_tree(first)
         self._links: list[tuple[Robot, Floats]] = []
-        """Of each moving link that has true shapes a robot of it alone, and how fast joints move it."""
+        """For each moving link with true shapes, a robot of that link alone, and the speeds at which joints move it."""
         if true is None:
             return
         for link in dict.fromkeys(capsule.link for capsule in first.capsules):
@@ -223,9 +223,9 @@ class CellTests:
         return free
 
     def clear(self, half: Floats, middles: Floats) -> Bools:
-        """Return which cells are free throughout, as far as obstacles go, or capsules where there are no true shapes.
+        """Return which cells seem free throughout, with obstacles only, or for capsules if there are no true shapes.
 
-        No proof relies on it.
+        No proof relies on the result.
         """
         if not self._links:
             thick = [
@@ -241,7 +241,7 @@ class CellTests:
 
 
 def cells_around(first: Robot, configuration: Floats, reach: Floats, most: int) -> Cells:
-    """Return about `most` cells around a configuration; where a joint wraps, at most the whole circle."""
+    """Return about `most` cells around a configuration; for a joint that wraps, at most the whole circle."""
     space = joint_space(first)
     period = space.flat.period
     reach = np.minimum(reach, 0.5 * period)
@@ -251,7 +251,7 @@ def cells_around(first: Robot, configuration: Floats, reach: Floats, most: int) 
     tree = moving_tree(first)
     placed = [place_capsule(capsule, tree) for capsule in first.capsules]
     speeds = speed_bounds(tree, placed, [], first)[0].max(axis=0)
-    # Half a cell along any joint moves the links by about the same distance; more cells, less distance.
+    # Half a cell along any joint moves the links by about the same distance; more cells reduce it.
     lengths = np.maximum(speeds, _SLOWEST) * (high - low)
     count = np.ceil(lengths * (most / np.prod(lengths)) ** (1 / len(reach))).astype(int)
     count = np.maximum(count, 2)
@@ -270,7 +270,7 @@ def _free_cells(bodies: Bodies, first: Robot, cells: Cells) -> Bools:
 
 
 def _joined(number: npt.NDArray[np.int32], whole: Bools) -> npt.NDArray[np.int32]:
-    """Return the numbers of pieces, 0 where blocked, with those joined that meet where a joint has gone round."""
+    """Return the numbers of pieces, 0 for blocked cells; pieces that meet across a full turn of a joint are joined."""
     if not whole.any():
         return number
     from scipy.sparse import coo_matrix
@@ -281,6 +281,6 @@ def _joined(number: npt.NDArray[np.int32], whole: Bools) -> npt.NDArray[np.int32
         both = (first > 0) & (last > 0)
         count = int(number.max()) + 1
         pairs = coo_matrix((np.ones(int(both.sum())), (first[both], last[both])), shape=(count, count))
-        # Nothing is joined to 0, which stays the first.
+        # Nothing is joined to 0, the number of blocked cells.
         number = connected_components(pairs, directed=False)[1][number]
     return number

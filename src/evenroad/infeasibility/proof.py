@@ -1,4 +1,4 @@
-"""Which proofs that there is no path are tried, in which order, and what they say of bodies, joints and the query."""
+"""The sequence of proofs that there is no path, and their messages about bodies, joints and the query."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from evenroad.world.protocol import Apart
 
 ONE = (1, (np.inf,), 2_000)
 QUICK = (ONE, (2, (np.inf, np.inf), 20_000))
-"""Tries of a quick proof, some milliseconds together: how many of the first joints, how far cells reach along each from
-the start or a goal [rad or m], and how many cells."""
+"""Tries of a quick proof, some milliseconds together.  Each has a number of leading joints, the extent of the cells
+along each from the start or a goal [rad or m], and the number of cells."""
 THOROUGH = (
     ONE,
     (2, (np.inf, np.inf), 60_000),
@@ -37,7 +37,7 @@ SPLIT, QUICK_SPLIT, MOST_SPLIT = 2, 200_000, 1_000_000
 `QUICK_SPLIT`, `MOST_SPLIT`: largest number of cells of the quick and the full proof."""
 
 MOST_GOALS = 4
-"""Largest number of goals that cells are laid around, too: they may show what cells around the start do not."""
+"""Largest number of goals around which cells are also tried. They may prove what cells around the start cannot."""
 
 _NEAR = 1e-3
 """Distance by which a posture may miss its pose and still reach it [m]."""
@@ -45,7 +45,7 @@ _NEAR = 1e-3
 PROVED = "proved: there is no path"
 
 Task = tuple[Chain, PoseTask]
-"""A pose goal as inverse kinematics takes it."""
+"""A pose goal in the form of inverse kinematics."""
 
 Tries = Sequence[tuple[int, tuple[float, ...], int]]
 
@@ -77,8 +77,8 @@ def apart(
 ) -> Apart | None:
     """Return the reason why no path leads from a start, (dim,), to any of the goals, (g, dim), or None.
 
-    It is proved where it holds for bodies inside the robot's true shapes and all postures that reach the `poses`.  The
-    goals are postures found for these, and given ones; they are not the `whole` where there may be others.
+    It is `proved` if it holds for bodies inside the robot's true shapes and for all postures that reach the `poses`.
+    The goals are given postures, and those found for the poses; they are `whole` if there can be no others.
     """
     robot, (tries, split) = world.robot, (QUICK, QUICK_SPLIT) if quickly else (THOROUGH, MOST_SPLIT)
     tasks = [task_of(robot, goal) for goal in poses]
@@ -111,14 +111,14 @@ def apart(
 
 
 def inner_bodies(world: InScene) -> Bodies:
-    """Return bodies inside of the robot's true shapes, and these shapes."""
+    """Return bodies inside the robot's true shapes, and these shapes."""
     robot = world.robot
     within = replace(robot, capsules=robot.inner or (), inner=None, shapes=())
     return Bodies(within, world.with_bodies, world.margin, robot)
 
 
 def outer_bodies(world: InScene) -> Bodies:
-    """Return the bodies that are planned with; pairs of which hulls decide are left out."""
+    """Return the bodies of planning, without the pairs that hulls decide."""
     sharp = {hull.link for hull in world.robot.hulls if not hull.is_round}
     pairs = tuple(pair for pair in world.robot.pairs if sharp.isdisjoint(pair))
     return Bodies(replace(world.robot, pairs=pairs), world.with_bodies, world.margin)
@@ -127,9 +127,9 @@ def outer_bodies(world: InScene) -> Bodies:
 def shown_by(
     bodies: Bodies, start: Floats, goals: Floats, tasks: Sequence[Task], tries: Tries, split: int = MOST_SPLIT
 ) -> tuple[tuple[str, ...], bool]:
-    """Return which joints cannot reach any goal, none where that is not shown; and whether other postures of poses may.
+    """Return the joints that cannot reach any goal, if that is shown, and whether other postures of poses may.
 
-    Walls come first: each shows that a single joint cannot.
+    Walls come first: each shows that a single joint cannot pass.
     """
     group = bodies.robot.group
     used, shown = dict[str, None](), tuple[str, ...]()
@@ -172,14 +172,14 @@ def _is_walled(bodies: Bodies, goal: Floats, start: Floats, reach: tuple[float, 
 def is_beyond(piece: Piece, chain: Chain, task: PoseTask) -> bool:
     """Return whether no posture in a piece brings a tip to a pose, for all values of the other joints.
 
-    The first joints place the next one's axis; from there the tip is no farther than the links are long, and no nearer
-    than one of them is longer than all others.
+    The first joints place the next one's axis.  From there the tip is at most as far as the sum of the links' lengths,
+    and at least as far as one of them is longer than all others together.
     """
     known, coordinates = len(piece.cells.count), chain.coordinates.tolist()
     first_free = next((i for i, coordinate in enumerate(coordinates) if coordinate >= known), len(coordinates))
     bars, target = np.linalg.norm(chain.rows[first_free + 1 :, 9:12], axis=1).tolist(), np.array(task.pose.xyz)
     if bars and task.turns_fully and task.angle_tolerance == 0.0:
-        # Where the last joint is is known, too.
+        # The pose of the last joint is known, too.
         turn = task.pose.rotation_matrix @ chain.rows[-1, :9].reshape(3, 3).T
         target, bars = target - turn @ chain.rows[-1, 9:12], bars[:-1]
     slides = _slides(chain)
@@ -191,7 +191,7 @@ def is_beyond(piece: Piece, chain: Chain, task: PoseTask) -> bool:
 
 
 def _slides(chain: Chain) -> list[float]:
-    """Return how far each frame slides at most; 0 where it turns [m]."""
+    """Return the largest slide of each frame; 0 for a frame that turns [m]."""
     lengths = []
     for coordinate, slides, row in zip(chain.coordinates, chain.slides, chain.rows, strict=False):
         (low, high), (multiplier, offset) = chain.bounds[:, coordinate] + (-BEYOND, BEYOND), row[12:]
@@ -203,7 +203,7 @@ def _slides(chain: Chain) -> list[float]:
 def _distances(
     piece: Piece, chain: Chain, first_free: int, target: Floats, slides: list[float]
 ) -> tuple[Floats, float]:
-    """Return how far a frame's origin is from a point in all cells' middles, (n,), and how far half a cell moves it."""
+    """Return distances of a frame's origin from a point, (n,), in the cells' middles, and its motion in half a cell."""
     cells, rows, coordinates = piece.cells, chain.rows, chain.coordinates
     where = np.nonzero(piece.reached)
     q = np.stack([cells.middles[k][row] for k, row in enumerate(where)], axis=1)

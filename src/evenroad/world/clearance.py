@@ -13,11 +13,11 @@ _MOST_PIECES = 200_000
 
 
 def least_distance(path: Floats, distance: Callable[[Floats], Floats], tolerance: float) -> float:
-    """Return the least distance along a path, (p, dim), less at most `tolerance`: never more than it is.
+    """Return a lower bound of the least distance along a path, (p, dim), at most `tolerance` too small.
 
-    `distance` returns the distances of configurations, (n, dim), from obstacles; between two of them it may change by
-    no more than their distance.  So a piece of the path is halved while it may contain the least (S. Piyavskii, 1972,
-    of functions with a Lipschitz constant).
+    `distance` returns the distances of configurations, (n, dim), from obstacles.  Between two configurations it changes
+    by at most their distance.  So a piece of the path is halved while it may contain the minimum (S. Piyavskii, 1972,
+    for functions with a Lipschitz constant).
     """
     waypoints = path if len(path) > 1 else np.repeat(path, 2, axis=0)
     a, b = waypoints[:-1], waypoints[1:]
@@ -39,9 +39,9 @@ def least_distance(path: Floats, distance: Callable[[Floats], Floats], tolerance
 
 
 def largest_kept(keeps: Callable[[float], bool], known: float, most: float, tolerance: float) -> float | None:
-    """Return the largest clearance up to `most` that is proved to be kept, within `tolerance`; None if none is.
+    """Return the largest clearance up to `most` that is proved, within `tolerance`; None if none is.
 
-    `keeps` says whether one is proved; `known` is the clearance of the query.
+    `keeps` says whether a clearance is proved; `known` is the clearance of the query.
     """
     if not keeps(known):
         return None

@@ -21,7 +21,7 @@ from evenroad.world.bisection import MOST_SEGMENTS, between_endpoints, require_f
 from evenroad.world.one_or_many import OneOrMany, one_or_many
 
 OUTSIDE = "it lies outside the bounds of the space"
-"""Reason why a configuration outside of the space is not free."""
+"""Reason given for a configuration outside the space."""
 ONE_BY_ONE = "called with one configuration at a time: from (n, dim) to (n,) it would be called once per batch"
 """Note on a function that takes one configuration."""
 SHARE_OF_EXTENT = 0.01
@@ -33,32 +33,32 @@ FINER = 20
 @explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class FunctionWorld(OneOrMany):
-    """A world of a function that calls configurations free; motions are free at states close together.
+    """A world of a user's function that says which configurations are free; motions are tested at close states.
 
-    A motion is divided into ``n = ceil(distance / resolution)`` equal segments, and free if all n + 1 states are: those
-    of OMPL's DiscreteMotionValidator, and the first.  Nothing between two states is checked, so the resolution should
-    be small beside the thinnest obstacle.  Endpoints come first, then halves, quarters and so on (van der Corput's
-    order), for all motions of a batch together: a vectorised function is called few times, with many states.  The final
-    path is checked more closely (`validate`), since shortcutting would find the gaps.
+    A motion is divided into ``n = ceil(distance / resolution)`` equal segments, and is free if all n + 1 states are:
+    those of OMPL's DiscreteMotionValidator, and the first.  Nothing between two states is checked, so choose a
+    resolution that is small compared with the thinnest obstacle.  Endpoints come first, then halves, quarters and so on
+    (van der Corput's order), for all motions of a batch together.  A vectorised function is thus called few times, with
+    many states.  The final path is checked at more states (`validate`), because shortcutting would find the gaps.
 
     Parameters
     ----------
     space : Space, or a sequence of (low, high)
-        The space of the configurations; outside it nothing is free, and the function is not called.  Bounds, one pair
-        a coordinate, stand for a BoxSpace.
+        The space of the configurations.  Outside it nothing is free, and the function is not called.  Bounds, one pair
+        per coordinate, mean a BoxSpace.
     is_valid : callable
-        From configurations, a read-only float64 (n, dim) array, to a bool array (n,); or from one configuration (dim,)
-        to a bool, which costs a call each.  Must give equal answers to equal configurations.
+        A function from configurations, a read-only float64 (n, dim) array, to a bool array (n,); or from one
+        configuration (dim,) to a bool, which costs one call each.  Equal configurations must get equal answers.
     resolution : float, or a sequence of floats for a Product, optional
-        The largest distance between neighbouring states, > 0, in the space's metric.  Several: one for each
-        part in the part's own metric; n is then the largest of all parts.  Default: a hundredth of the
-        space's extent, the largest distance that 65 configurations spread over the space have from each other.
+        The largest distance between neighbouring states, > 0, in the space's metric.  Several numbers are one for each
+        part in the part's own metric; n is then the largest of all parts.  Default: a hundredth of the space's extent,
+        which is the largest distance between 65 configurations spread over the space.
     vectorised : bool, optional
-        Whether `is_valid` takes many configurations at once.  Default: it is called with many first, and with one
-        after the other where that fails.
+        Whether `is_valid` takes many configurations at once.  Default: it is called with many first, and one by one if
+        that fails.
     name : str, optional
-        Name of the function with all that its results depend on, such as ``"cell 7, tool v2"``, for the world's
-        fingerprint.
+        Name for the world's fingerprint. It must include everything that the function's results depend on, such as
+        ``"cell 7, tool v2"``.
 
     Raises
     ------
@@ -76,7 +76,7 @@ class FunctionWorld(OneOrMany):
     """
 
     proof: ClassVar[str] = "resolution"
-    """The proof of a motion: a function says nothing of what lies between two states."""
+    """The kind of proof of a motion: a function says nothing about configurations between two states."""
 
     space: Space
     is_valid: Callable[[Floats], object]
@@ -100,8 +100,8 @@ class FunctionWorld(OneOrMany):
     def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), the space contains and the function calls free: (n,).
 
-        Of one configuration, (dim,), a bool; `motion_valid`, too.  Raises InvalidValue if `q` is no such batch, or the
-        function's answer is not of the kind described above.
+        For one configuration, (dim,), it is a bool; likewise for `motion_valid`.  Raises InvalidValue if `q` is no such
+        batch, or the function's answer is not of the kind described above.
         """
         batch = wrapped(self.space, as_batch("q", q, self.space.dim))
         free = self.space.contains(batch)
@@ -113,7 +113,7 @@ class FunctionWorld(OneOrMany):
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
-        Raises InvalidValue as `valid`, if the two differ in length, or if a motion has more than 2^30 states.
+        Raises the errors of `valid`, and InvalidValue if the two differ in length, or a motion has over 2^30 states.
         """
         return self._motions_free(*as_batch_pair(a, b, self.space.dim), finer=1)
 
@@ -123,8 +123,8 @@ class FunctionWorld(OneOrMany):
         return self._motions_free(waypoints[:-1], waypoints[1:], finer=FINER)
 
     def _motions_free(self, first: Floats, second: Floats, finer: int) -> Bools:
-        """Return which motions are free at states `finer` times as dense as the resolution says."""
-        # A function need not know how often an angle has turned.
+        """Return which motions are free at states `finer` times as dense as the resolution."""
+        # A function need not handle angles of more than one turn.
         first, second = wrapped(self.space, first), wrapped(self.space, second)
         free = self.valid(first)
         free[free] = self.valid(second[free])
@@ -138,7 +138,7 @@ class FunctionWorld(OneOrMany):
         return free
 
     def fingerprint(self) -> str:
-        """Return a text that two worlds of the same space, resolution and name share.
+        """Return a text that is equal for worlds of the same space, resolution and name.
 
         Raises
         ------
@@ -189,8 +189,8 @@ class FunctionWorld(OneOrMany):
                 free[i] = self._evaluate_one(state)
 
     def _takes_many(self, states: Floats) -> bool:
-        """Return whether the function takes many configurations at once; True where it fails either way."""
-        # As many rows as columns would look right where a function of one row compares columns.
+        """Return whether the function takes many configurations at once; True if it fails either way."""
+        # With as many rows as columns, a function of one row that compares columns would look right.
         rows = np.repeat(states[:1], self.space.dim + 1, axis=0)
         rows.setflags(write=False)
         try:
@@ -265,7 +265,7 @@ def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...
 
 
 def _extent(space: Space) -> float:
-    """Return the largest distance between configurations that are spread over a space, its corners among them."""
+    """Return the largest distance between configurations that are spread over a space, including its corners."""
     steps = 2.0 ** (np.arange(1, space.cube_dim + 1) / (space.cube_dim + 1))
     last = np.full((1, space.cube_dim), np.nextafter(1.0, 0.0))
     q = space.from_cube(np.vstack([np.arange(64)[:, np.newaxis] * steps % 1.0, last]))
@@ -275,7 +275,7 @@ def _extent(space: Space) -> float:
 def _in_fixed_order(a: Floats, b: Floats) -> tuple[Floats, Floats]:
     """Return the endpoints with the smaller (in dictionary order) first.
 
-    States are rounded: without a fixed order a motion and its reverse could differ.
+    States are rounded, so without a fixed order a motion and its reverse could differ.
     """
     first_difference = (a != b).argmax(axis=1)[:, np.newaxis]
     swap = np.take_along_axis(a, first_difference, axis=1) > np.take_along_axis(b, first_difference, axis=1)

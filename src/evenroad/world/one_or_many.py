@@ -20,7 +20,7 @@ class OneOrMany:
     """Base of worlds whose checks, marked by `one_or_many`, take one configuration, too."""
 
     if TYPE_CHECKING:
-        # A property for real would be taken for the default of a dataclass's field.
+        # A real property would become the default of a dataclass's field.
         @property
         def space(self) -> Space: ...  # noqa: D102
 
@@ -35,7 +35,7 @@ class OneOrMany:
         Parameters
         ----------
         q : array_like, shape (n, dim) or (dim,)
-            Configurations in the units of the space; of an arm one may also be a mapping or the name of a state.
+            Configurations in the units of the space; for an arm one may also be a mapping or the name of a state.
 
         Returns
         -------
@@ -57,12 +57,12 @@ class OneOrMany:
         raise NotImplementedError
 
     def motion_valid(self, a: Any, b: Any) -> Any:
-        """Return which motions are free: the shortest of the space, from each row of `a` to that of `b`.
+        """Return which motions are free: shortest interpolations from each row of `a` to that of `b`.
 
         Parameters
         ----------
         a, b : array_like, shape (m, dim) or (dim,)
-            As `q` of :meth:`valid`.
+            As for :meth:`valid`.
 
         Returns
         -------
@@ -114,7 +114,7 @@ class OneOrMany:
 
 
 def one_or_many(check: Check) -> Check:
-    """Return a check that answers one bool or number for one configuration, (dim,), or one motion between two."""
+    """Return a check that gives one bool or number for one configuration, (dim,), or for one motion between two."""
     check = explains_calls(check)
 
     @wraps(check)

@@ -1,4 +1,4 @@
-"""World: the checks that a planner needs of a robot among its obstacles."""
+"""World: the interface to the checks of a robot among its obstacles."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ class World(Protocol):
     """Validity of configurations and of motions, always for a batch.
 
     Implementations never write to their arguments, give every row the result that it would get alone, and raise
-    InvalidValue for a wrong shape or an entry that is not finite.  A motion is the shortest
-    interpolation of the space; it is free only if both of its endpoints are, and reversing it changes nothing.
+    InvalidValue for a wrong shape or an entry that is not finite.  A motion is the shortest interpolation of the space.
+    It is free only if both endpoints are, and its reverse has the same result.
 
-    A world may have a text `proof` that says what its check of a motion shows: ``exact`` (no gap, up to rounding),
+    A world may have a text `proof`, the kind of proof of a motion's check: ``exact`` (no gap, up to rounding),
     ``certified`` (no gap) or ``resolution`` (states close together), which is the default.
     """
 
@@ -33,10 +33,10 @@ class World(Protocol):
 
 @runtime_checkable
 class Explains(Protocol):
-    """A world that explains, in words, why a configuration is not free; planners put it into their answers."""
+    """A world that explains in words why a configuration is not free; planners use the text in their messages."""
 
     def explain(self, q: Floats) -> str:
-        """Return what one configuration, (dim,), that is not free collides with."""
+        """Return why one configuration, (dim,), is not free, such as the bodies in collision."""
 
 
 @runtime_checkable
@@ -44,7 +44,7 @@ class ExplainsStarts(Explains, Protocol):
     """A world that explains in more detail why a robot cannot start."""
 
     def explain_start(self, q: Floats) -> str:
-        """Return as `explain` why a start, (dim,), is not free, and what to do about it."""
+        """Return why a start, (dim,), is not free, like `explain`, and what to do about it."""
 
 
 @runtime_checkable
@@ -53,7 +53,7 @@ class ValidatesPaths(Protocol):
 
     @property
     def proof(self) -> str:
-        """What `validate` shows: ``resolution`` (states closer than in planning) or ``certified`` (no gap)."""
+        """Kind of proof of `validate`: ``resolution`` (states closer than in planning) or ``certified`` (no gap)."""
 
     def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are free by the strict check: (p - 1,)."""
@@ -69,7 +69,7 @@ class MeasuresPaths(Protocol):
 
 @runtime_checkable
 class NamesNearest(Protocol):
-    """A world that names what comes nearest to contact."""
+    """A world that names the body and obstacle nearest to contact."""
 
     def nearest_along(self, path: Floats) -> tuple[str, str] | None:
         """Return the names of the robot's body and the obstacle that come nearest along a path, (p, dim)."""
@@ -77,10 +77,10 @@ class NamesNearest(Protocol):
 
 @runtime_checkable
 class BoundsLengths(Protocol):
-    """A world that knows more of how short a path can be than the straight distance."""
+    """A world with a better lower bound of path lengths than the straight distance."""
 
     def least_length(self, start: Floats, goals: Floats) -> float:
-        """Return a length that no path from the start, (dim,), to any goal, (g, dim), falls below."""
+        """Return a lower bound of the length of paths from the start, (dim,), to any goal, (g, dim)."""
 
 
 @dataclass(frozen=True)
@@ -88,14 +88,14 @@ class Apart:
     """A proof that no path leads from a start to its goals."""
 
     message: str
-    """One sentence: of which bodies, and by which argument."""
+    """One sentence: the bodies that it is about, and the argument."""
     proved: bool
-    """Whether there is no path at all; else the world can find none, and others may be."""
+    """Whether it is proved that there is no path; else none can be found for the bodies or postures of the message."""
 
 
 @runtime_checkable
 class ShowsApart(Protocol):
-    """A world that can show that no path leads from a start to its goals, blocked ones included."""
+    """A world that can show that no path leads from a start to its goals, including blocked ones."""
 
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
         """Return the reason why no path leads from the start, (dim,), to the goals, (g, dim); None if unknown.

@@ -1,4 +1,4 @@
-"""Grid maps: images and ROS maps, and the exact world of a disk robot on them."""
+"""Grid maps from images and ROS maps, and the exact world of a disk robot on them."""
 
 from evenroad._lazy import names_on_use
 

@@ -26,9 +26,9 @@ from evenroad.world.protocol import Apart
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
 _OF_CELL = 3e-8
-"""Least time per cell of a map for making its components [s]."""
+"""Shortest time per cell to compute the components of a map [s]."""
 _CLOSE = 1e-3
-"""Largest error of a reported clearance, which is too small by it [pixels]."""
+"""Largest amount by which a reported clearance is too small [pixels]."""
 _INTERVALS = 300_000
 """Budget for the lower bound of path lengths, in intervals of cell sides: some hundredths of a second."""
 _UNKNOWN_COUNT = "unknown cells count as obstacles unless unknown_is_free=True or --unknown-is-free says otherwise"
@@ -37,22 +37,22 @@ _ON_A_SIDE = 1e-6
 _ROUNDINGS = 16
 """Number of times that a coordinate of a state may have been rounded."""
 _SMALLEST_RADIUS = 1e-150
-"""Smallest radius, whose square is above 0: a disk of any size touches what its centre lies on [pixels]."""
+"""Smallest radius. Its square is above 0, so that a disk of any size touches a cell under its centre [pixels]."""
 
 
 @explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class DiskWorld(OneOrMany):
-    """A disk of one radius on one map: what `GridMap.world` returns.
+    """The world of a disk of one radius on one map, made by `GridMap.world`.
 
-    Obstacles are the closed squares of the occupied cells and everything outside the map; a disk is free if its centre
-    is at least `radius` away from all of them, so touching is free.  Motions are swept disks along straight segments,
-    tested without any step length: exact up to float rounding, about 1e-12 pixels.  `radius` is the disk's with any
-    clearance added, in map units, > 0, else InvalidValue; `margin` is how much of it is clearance.
+    Obstacles are the closed squares of the occupied cells, and everything outside the map.  A disk is free if its
+    centre is at least `radius` away from all of them, so touching is free.  Motions are swept disks along straight
+    segments.  They are tested without a step length, and are exact up to float rounding, about 1e-12 pixels.  `radius`
+    is that of the disk plus any clearance, in map units, > 0, else InvalidValue; `margin` is the clearance in it.
     """
 
     proof: ClassVar[str] = "exact"
-    """What a check of a motion shows."""
+    """The kind of proof of a motion's check."""
 
     grid: GridMap
     radius: float
@@ -64,7 +64,7 @@ class DiskWorld(OneOrMany):
         set_fields(self, radius=radius, disk=_disk_on(self.grid, radius))
 
     def __reduce__(self) -> tuple[type[DiskWorld], tuple[object, ...]]:
-        """Return what a copy is made of, here or in another process: it makes its own tables."""
+        """Return the arguments of a copy, which makes its own tables, here or in another process."""
         return type(self), (self.grid, self.radius, self.margin)
 
     @property
@@ -74,7 +74,7 @@ class DiskWorld(OneOrMany):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was read otherwise than the files of the map may mean it."""
+        """Notes about values that the files of the map may mean differently."""
         return self.grid.notes
 
     def __repr__(self) -> str:
@@ -85,7 +85,7 @@ class DiskWorld(OneOrMany):
     def valid(self, q: Floats) -> Bools:
         """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map.
 
-        Of one point, (2,), a bool; `motion_valid`, too.
+        For one point, (2,), it is a bool; likewise for `motion_valid`.
         """
         return self.disk.points_free(as_batch("q", q, 2))
 
@@ -97,7 +97,7 @@ class DiskWorld(OneOrMany):
     def driven_free(self, states: Floats) -> Bools:
         """Return which motions between states of a trajectory, (n, 2), are free: (n - 1,).
 
-        States are computed from a path and rounded: where that touches an obstacle, so do they, up to rounding.
+        States are computed from a path and rounded.  If the path touches an obstacle, rounded states may overlap it.
         """
         points = as_batch("states", states, 2)
         free = self.disk.motions_free(points[:-1], points[1:])
@@ -108,7 +108,7 @@ class DiskWorld(OneOrMany):
 
     @cached_property
     def _nearly(self) -> Disk:
-        """The disk without what coordinates on this map are rounded by."""
+        """A disk that is smaller by the rounding of coordinates on this map."""
         farthest = max(float(np.abs(corner).max()) for corner in self.grid.bounds)
         rounding = _ROUNDINGS * np.finfo(float).eps * (farthest / self.grid.resolution + sum(self.grid.shape))
         return _disk_on(self.grid, max(self.radius - rounding * self.grid.resolution, 0.0))
@@ -120,13 +120,13 @@ class DiskWorld(OneOrMany):
         Parameters
         ----------
         q : array_like, shape (n, 2) or (2,)
-            Centres of the disk; of one, the distance is a float.
+            Centres of the disk; for one, the distance is a float.
 
         Returns
         -------
         ndarray, shape (n,)
-            Negative where the disk overlaps an obstacle, at least minus its radius: there the centre lies in an
-            obstacle or outside the map.  The disk is free from the clearance of the world on, by default 0.
+            Negative if the disk overlaps an obstacle.  It is minus the radius if the centre lies in an obstacle or
+            outside the map.  The disk is free if the distance is at least the clearance of the world, by default 0.
         """
         return self._from_centre(as_batch("q", q, 2)) - (self.radius - self.margin)
 
@@ -143,11 +143,11 @@ class DiskWorld(OneOrMany):
     def nearest_obstacle(self, q: Floats) -> Floats:
         """Return the obstacle point nearest to each map point, (n, 2) -> (n, 2), in map units.
 
-        A point in an obstacle or outside the map is its own; of several equally near ones, always the same is returned.
+        A point in an obstacle or outside the map is its own nearest point.  Ties are always resolved in the same way.
         """
         centres = as_batch("q", q, 2)
         pixels, distance = self.disk.nearest_obstacles(centres)
-        # A centre that is its own nearest point is returned as it came, without the detour through pixels.
+        # A centre that is its own nearest point is returned unchanged, not rounded by pixels.
         nearest, away = centres.copy(), distance > 0.0
         nearest[away] = self.grid.frame.to_map(pixels[away])
         return nearest
@@ -155,25 +155,25 @@ class DiskWorld(OneOrMany):
     def nearest_free(self, q: Floats) -> Floats | None:
         """Return a free map point, (2,), near the map point `q`, (2,), or None if there is none.
 
-        It is the nearest of the surely free cells, and of a lattice of quarter pixels in those that are partly free.
+        It is the nearest point of entirely free cells, or of a lattice of quarter pixels in partly free cells.
         """
         column, row = self._pixels(q)
         free = self.disk.nearest_free(column, row)
         return None if free is None else self.grid.frame.to_map(np.array([free]))[0]
 
     def may_connect(self, a: Floats, b: Floats) -> bool:
-        """Return False where it is proved that no path leads from map point `a`, (2,), to `b`, (2,).
+        """Return False if it is proved that no path leads from map point `a`, (2,), to `b`, (2,).
 
-        Cells without a free point separate the others into components, in one of which every path stays.
-        Where both points are in the same one, there is a path unless it leads through a passage that is narrower than
-        the disk by less than about a tenth of a pixel.
+        Cells without a free point separate the others into components, and every path stays in one of them.  If both
+        points are in the same component, there is a path, unless it leads through a passage that is narrower than the
+        disk by less than about a tenth of a pixel.
         """
         return self.component(a) == self.component(b) != 0
 
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
-        """Return the proof that no path leads from a start, (2,), to any goal, (g, 2); None says nothing.
+        """Return the proof that no path leads from a start, (2,), to any goal, (g, 2); None means unknown.
 
-        Tiles of the map decide first; then the components of the whole map are made once, which is not quick.
+        Tiles of the map decide first.  Then the components of the whole map are computed once, unless `quickly`.
         """
         first, last = as_batch("start", np.reshape(start, (1, -1)), 2)[0], as_batch("goals", goals, 2)
         if self.disk.may_reach(first, last) and (quickly or any(self.may_connect(start, goal) for goal in goals)):
@@ -182,18 +182,18 @@ class DiskWorld(OneOrMany):
         return Apart(PROVED + counted, proved=True)
 
     def least_length(self, start: Floats, goals: Floats) -> float:
-        """Return a length that no path from a map point, (2,), to any goal, (g, 2), falls below, in map units.
+        """Return a lower bound of the length of paths from a map point, (2,), to any goal, (g, 2), in map units.
 
-        It is that of the shortest way of a point, in any direction, through all cells that are not blocked throughout:
-        the disk's paths stay in them.  Infinite where they join no goal to the start.  On a large map that takes some
-        hundredths of a second at most; what is not known by then makes the length smaller.
+        It is the length of the shortest path of a point, in any direction, through all cells that are not entirely
+        blocked: the disk's paths stay in them.  It is infinite if they join no goal to the start.  On a large map it
+        takes at most some hundredths of a second; parts that are unknown by then make the bound smaller.
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
         return min(self.disk.least_length(first, goal, _INTERVALS // len(last)) for goal in last)
 
     def component(self, q: Floats) -> int:
-        """Return the number, from 1 on, of the component that a map point, (2,), lies in; 0 where no disk is free."""
+        """Return the number, from 1, of the component that contains a map point, (2,); 0 if no disk is free there."""
         column, row = self._pixels(q)
         rows, cols = self.grid.occupied.shape
         if not (0.0 < column < cols and 0.0 < row < rows):
@@ -201,7 +201,7 @@ class DiskWorld(OneOrMany):
         return self._components.at(column, row)
 
     def cells_of(self, component: int) -> Bools:
-        """Return the cells of the map, (rows, cols), that have a part in a component."""
+        """Return the cells of the map, (rows, cols), that overlap a component."""
         return self._components.cells_of(component)[1:-1, 1:-1]
 
     @cached_property
@@ -216,7 +216,7 @@ class DiskWorld(OneOrMany):
         return digest.hexdigest()
 
     def explain(self, q: Floats) -> str:
-        """Return, in words, how near an obstacle is to a disk at the map point `q`, (2,)."""
+        """Return in words how near an obstacle is to a disk at the map point `q`, (2,)."""
         centre = self._row(q)[np.newaxis]
         pixels, distances = self.disk.nearest_obstacles(centre)
         is_unknown = self._is_unknown(pixels[0])
@@ -227,7 +227,7 @@ class DiskWorld(OneOrMany):
             reason = f"its centre lies in an {kind}"
         else:
             x, y = self.grid.frame.to_map(pixels)[0]
-            # A distance is rounded, too: what is not free is never as far as it needs.
+            # The distance is rounded down, so that a blocked disk never seems far enough away.
             distance = min(float(distances[0]) * self.grid.frame.resolution, math.nextafter(self.radius, 0.0))
             away, needs = distinguished(distance, self.radius)
             reason = f"the {kind} at ({x:.6g}, {y:.6g}) is {away} away, the disk needs {needs}"

@@ -1,4 +1,4 @@
-"""MapFrame: where the pixels of a map lie in the plane."""
+"""MapFrame: the transform between the pixels of a map and the plane."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ class MapFrame:
     def coefficients(self) -> Floats:
         """Return the origin, the map directions of increasing column and row, the resolution, and the origin's row.
 
-        A point's column is ``(q - origin) . direction / resolution``: subtracting first and dividing last keeps round
-        numbers round, so that a disk that just touches is seen to just touch.
+        A point's column is ``(q - origin) . direction / resolution``.  Subtracting first and dividing last keeps round
+        numbers exact, so that a disk that just touches an obstacle is recognised as free.
         """
         cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
         if not self.y_up:
@@ -70,7 +70,7 @@ class MapFrame:
     def to_pixels(self, q: Floats) -> Floats:
         """Return the pixel coordinates (column, row), (n, 2), of the map points `q`, (n, 2)."""
         x0, y0, column_x, column_y, row_x, row_y, scale, first_row = self.coefficients()
-        # Points that are absurdly far away may overflow: infinite, or NaN, is as good an "outside" as any.
+        # Points that are extremely far away may overflow. Infinite or NaN coordinates also mean outside.
         with np.errstate(over="ignore", invalid="ignore"):
             x, y = q[:, 0] - x0, q[:, 1] - y0
             column = (column_x * x + column_y * y) / scale

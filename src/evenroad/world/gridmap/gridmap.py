@@ -37,9 +37,9 @@ class GridMap:
     unknown : array_like of bool, shape (rows, cols), optional
         Unknown cells; `occupied` says whether they are obstacles.  Default: none.
     resolution : float, optional
-        In place of `frame`: side of a cell, > 0 [m], of a map as ROS has them, y up, the origin in the lower left.
+        Side of a cell, > 0 [m], in place of `frame`: a map like those of ROS, y up, with the origin in the lower left.
     notes : iterable of str, optional
-        What was read otherwise than it may have been meant, a line each; `load_map` fills it.
+        Notes, one line each, about values that may have been meant differently; `load_map` fills it.
 
     Raises
     ------
@@ -107,12 +107,12 @@ class GridMap:
         return corners.min(axis=0), corners.max(axis=0)
 
     def plot(self, path: str | os.PathLike[str] | None = None) -> Image.Image:
-        """Return a picture of the map, of a pixel a cell or more.
+        """Return a picture of the map, with at least one pixel per cell.
 
         Parameters
         ----------
         path : str or path-like, optional
-            A ``.png`` that it is saved to.
+            A ``.png`` to save it to.
 
         Returns
         -------
@@ -142,7 +142,7 @@ class GridMap:
 
     @property
     def space(self) -> Rectangle:
-        """The image's rectangle in map units, rotated as the map is."""
+        """The image's rectangle in map units, rotated like the map."""
         return self.frame.rectangle
 
     def contains(self, q: Floats) -> Bools:
@@ -171,12 +171,12 @@ class GridMap:
     def world(self, radius: float, clearance: float = 0.0) -> DiskWorld:
         """Return the world of a disk robot on the map.
 
-        For a robot of another footprint, take the radius of the disk around it.
+        For a robot with another footprint, use the radius of a disk around it.
 
         Parameters
         ----------
         radius : float
-            Radius of the disk, > 0, in map units: metres of a ROS map, pixels of a bare image.
+            Radius of the disk, > 0, in map units: metres for a ROS map, pixels for a bare image.
         clearance : float
             Least distance from every obstacle, >= 0, in map units.
 
@@ -206,8 +206,8 @@ class GridMap:
     def cropped(self) -> GridMap:
         """Return the map without rows and columns beyond its outermost free cells, in the same position.
 
-        Nothing changes for a disk, since the outside of a map is obstacle, too.  Points drawn over its rectangle then
-        lie where the map is free, even if most of it is unknown.
+        Nothing changes for a disk, because the outside of a map is also an obstacle.  Points drawn over the smaller
+        rectangle lie near free cells, even if most of the map is unknown.
         """
         rows, cols = (np.flatnonzero((~self.occupied).any(axis=axis)) for axis in (1, 0))
         if not rows.size:
@@ -221,7 +221,7 @@ class GridMap:
 
 def _as_cells(name: str, value: Bools) -> Bools:
     cells = np.asarray(value)
-    # What its maker cannot change needs no copy, which for 100 million cells takes as long as to read them.
+    # A read-only array needs no copy. A copy of 100 million cells takes as long as reading them.
     if cells is not value or cells.flags.writeable or not cells.flags.owndata or not cells.flags.c_contiguous:
         cells = np.array(value, order="C")
     if cells.ndim != 2 or cells.size == 0 or cells.dtype != np.bool_:

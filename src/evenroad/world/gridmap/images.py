@@ -1,4 +1,4 @@
-"""Images as maps: pictures from anywhere are decoded and checked, and dark pixels are obstacles."""
+"""Images as maps: pictures from any source are decoded and checked, and dark pixels are obstacles."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.world.gridmap.gridmap import GridMap
 
 SUFFIXES = (".png", ".pgm", ".bmp")
-"""Suffixes of images that are maps by themselves."""
+"""Suffixes of images that are maps on their own."""
 
 LARGEST_IMAGE = 100_000_000
-"""Largest number of pixels of a map: 10 000 x 10 000.  Where a disk plans all over it, its world takes 0.1 GB."""
+"""Largest number of pixels of a map: 10 000 x 10 000.  A world whose queries cover all of it takes 0.1 GB."""
 DARK = 128.0
 """Luminance, of 255, below which a bare image's cell is an obstacle."""
 Pixels = npt.NDArray[np.uint8 | np.uint16]
@@ -32,9 +32,9 @@ _KINDS = ("a PNG image", "a PGM image", "a BMP image")
 def load_image(path: str | os.PathLike[str], *, dark: float = DARK) -> GridMap:
     """Read a bare PNG, PGM or BMP image as a map: pixels whose luminance, of 255, is below `dark` are obstacles.
 
-    Colours count by ITU-R BT.601 (0.299 R + 0.587 G + 0.114 B, rounded), transparent pixels as if on white paper.  The
+    Luminance is that of ITU-R BT.601 (0.299 R + 0.587 G + 0.114 B, rounded), with transparent pixels on white.  The
     frame is the image's own: x right, y down, origin in the top-left corner, unit = pixel.  Raises BrokenFile if the
-    file is missing, is no whole image of these kinds, or has more than 100 million pixels; InvalidValue if `dark` is
+    file is missing, is no complete image of these kinds, or has more than 100 million pixels; InvalidValue if `dark` is
     not in (0, 255].
     """
     if require_positive("dark", dark) > 255.0:
@@ -60,7 +60,7 @@ def open_image(path: str | os.PathLike[str]) -> Image.Image:
 def _decoded(stream: IO[bytes], file: Path) -> Image.Image:
     try:
         with warnings.catch_warnings():
-            # Pillow warns from 89 million pixels on; the limit here is ours.
+            # Pillow warns above 89 million pixels, but our limit is higher.
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             image = Image.open(stream, formats=_FORMATS)
     except Image.DecompressionBombError:

@@ -1,4 +1,4 @@
-"""Reading a map of any kind by its suffix, and the maps that ship with evenroad."""
+"""Reader of maps of any kind, by their suffix, and the maps that ship with evenroad."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ SHIPPED = ("maze1.png", "maze2.png", "maze3.png", "office.yaml")
 def load_map(
     path: str | os.PathLike[str] | Bools, *, unknown_is_free: bool = False, rules: str | None = None
 ) -> GridMap:
-    """Read a map: a bare image (.png, .pgm, .bmp), a ROS map_server file (.yaml, .yml), a map of the MovingAI
-    benchmarks (.map), or an array as `GridMap` takes it.
+    """Read a map from a file, or make one of an array for `GridMap`.
 
-    `load_image`, `load_ros_map` and `load_movingai_map` say what the pixels or letters mean, where the map then lies,
-    and what they raise.
+    Files are bare images (.png, .pgm, .bmp), ROS map_server files (.yaml, .yml), and maps of the MovingAI benchmarks
+    (.map).  `load_image`, `load_ros_map` and `load_movingai_map` document the meaning of pixels or letters, the frames,
+    and the errors.
 
     Parameters
     ----------
     path : path, or bool ndarray, shape (height, width)
-        The file; where there is none, the name of a shipped map: ``office.yaml``, 12 m by 8 m, or ``maze1``,
+        The file.  If there is no such file, the name of a shipped map: ``office.yaml``, 12 m by 8 m, or ``maze1``,
         ``maze2`` and ``maze3``, images of 640 by 480 pixels.
     unknown_is_free : bool
         Whether the unknown cells of a ROS map are free.
     rules : {"nav2", "ros1"}, optional
-        Rules of map_server that a ROS map is read by: of nav2 since April 2025, the default, or of ROS 1 and nav2
-        before.  Where they read a file differently, a warning says so if you do not choose.
+        Rules of map_server for reading a ROS map: those of nav2 since April 2025, the default, or those of ROS 1 and
+        earlier nav2.  If you do not choose, a warning says whether they read a file differently.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def load_map(
     UnknownName
         If the suffix is another one.
     BrokenFile, InvalidValue
-        As the three; InvalidValue also for rules of a map that is not of ROS.
+        As for the three; InvalidValue also for rules with a map that is not of ROS.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def load_map(
 
 
 def find_map(source: str | os.PathLike[str]) -> Path:
-    """Return the file of a map: `source` itself or, where there is no such file, the shipped one of that name."""
+    """Return the file of a map: `source` itself or, if there is no such file, the shipped one of that name."""
     path = as_file("a map", source, "a map of an array is GridMap(cells, resolution=...)")
     if not path.is_file() and path.parent == Path():
         for name in SHIPPED:
@@ -122,7 +122,7 @@ class Maze:
 
 
 def load_maze(level: int) -> Maze:
-    """Return the maze of level 1, 2 or 3, harder and harder for uniform points; else an UnknownName."""
+    """Return the maze of level 1, 2 or 3, each harder for uniform points; UnknownName for another level."""
     require_known("maze level", level, LEVELS)
     record = json.loads((MAPS / "mazes.json").read_text(encoding="utf-8"))[str(level)]
     start, goal = tuple(record["start"]), tuple(record["goal"])

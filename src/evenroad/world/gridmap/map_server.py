@@ -31,7 +31,7 @@ _FREE, _UNKNOWN, _OCCUPIED = range(3)
 _NAMES = ("free", "unknown", "occupied")
 
 Kinds = npt.NDArray[np.uint8]
-"""For each cell, or for each level that a pixel may have, whether it is free, unknown or occupied."""
+"""Kind of each cell, or of each possible level of a pixel: free, unknown or occupied."""
 
 
 class RosMapMeta(NamedTuple):
@@ -52,28 +52,28 @@ class RosMapMeta(NamedTuple):
 def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False, rules: str | None = None) -> GridMap:
     """Read a map_server YAML file and its image as a map.
 
-    A cell is occupied, free or unknown by the rules of map_server.  ``nav2`` (the default) are those of nav2 since
+    A cell is occupied, free or unknown by the rules of map_server.  ``nav2``, the default, means those of nav2 since
     April 2025 (its pull request 5071):
 
     * the *shade* of a pixel is its luminance, of 255 levels, by ITU-R BT.601; 0 = black, 1 = white;
     * its *occupancy* is ``1 - shade``, or ``shade`` with `negate`;
     * **trinary**: free if occupancy <= free_thresh, else occupied if occupancy >= occupied_thresh, else unknown;
-    * **scale**: the same.  Cells between the thresholds, which map_server grades from 1 to 99, are known neither to be
-      free nor occupied: they count as unknown; those that it rounds to 0 and 100 are free and occupied;
+    * **scale**: the same.  map_server grades cells between the thresholds from 1 to 99; these count as unknown.  Those
+      that it rounds to 0 and 100 are free and occupied;
     * in both modes a pixel that is not opaque is unknown;
     * **raw**: the level, 0 to 255, *is* the occupancy in percent, without any `negate` or alpha, and levels above 100
-      are unknown.  map_server does not decide what is occupied; here the same two thresholds do.
+      are unknown.  map_server does not decide which cells are occupied; here the same two thresholds do.
 
-    ``ros1`` are those of map_server in ROS 1, which nav2 had before: the shade is the mean of the colour channels, in
-    mode trinary with the alpha channel as one more; a value equal to a threshold is unknown; in mode scale a pixel that
-    is not opaque is unknown.  Where scale and raw of the two differ, nav2's are meant.
+    ``ros1`` means those of map_server in ROS 1 and earlier nav2.  The shade is the mean of the colour channels; in mode
+    trinary the alpha channel is one of them.  A value equal to a threshold is unknown.  In mode scale a pixel that is
+    not opaque is unknown.  If scale and raw of the two differ, nav2's rules apply.
 
     Unknown cells are obstacles, unless `unknown_is_free`.  Without `rules` a warning says where the two read the file
-    differently; the map's `notes` say so always.
+    differently; the map's `notes` always say so.
 
-    Raises BrokenFile if the YAML file or the image is missing or broken, or a key is missing or there twice;
-    UnknownName if a key is nearly one that map_server knows, or mode or rules are none of them (other keys are passed
-    over with a warning); InvalidValue if a value has the wrong type or range.
+    Raises BrokenFile if the YAML file or the image is missing or broken, or a key is missing or repeated; UnknownName
+    for a key similar to one of map_server, or an unknown mode or rules (other keys are ignored with a warning);
+    InvalidValue if a value has the wrong type or range.
     """
     if rules is not None:
         require_known("rules of a map:", rules, RULES)
@@ -98,7 +98,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     file = Path(path)
     document = read_mapping(file, "map")
     known = (*_REQUIRED, "mode")
-    # Newer map servers write more; what looks like a slip of the pen is no newer key.
+    # Newer map servers write more keys. One that looks misspelt is not a newer key.
     strange = [key for key in document if key not in known and not near(str(key), known)]
     require_keys([key for key in document if key not in strange], _REQUIRED, ("mode",), str(file))
     image, mode, negate = document["image"], document.get("mode", "trinary"), document["negate"]
@@ -129,15 +129,15 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
 
 
 class Levels(NamedTuple):
-    """What some rules look at: the level of each pixel, (rows, cols), what each level means, and hidden pixels."""
+    """Data for some rules: the level of each pixel, (rows, cols), the kind of each level, and hidden pixels."""
 
     of_pixels: Pixels
     table: Kinds
     hidden: Bools | None = None
-    """Pixels that are unknown whatever their level is."""
+    """Pixels that are unknown at any level."""
 
     def kinds(self) -> Kinds:
-        """Return what each pixel is, (rows, cols)."""
+        """Return the kind of each pixel, (rows, cols)."""
         found = self.table[self.of_pixels]
         if self.hidden is not None:
             found[self.hidden] = _UNKNOWN
@@ -145,11 +145,11 @@ class Levels(NamedTuple):
 
 
 def _read_pixels(image: Image.Image, meta: RosMapMeta, rules: str) -> tuple[Kinds, str]:
-    """Return what each pixel of `open_image` is, (rows, cols), and in words where the other rules differ."""
+    """Return the kind of each pixel of `open_image`, (rows, cols), and in words where the other rules differ."""
     pixels = np.asarray(image)
     own, other = (of(pixels, image, meta) for of in ((_nav2, _ros1) if rules == "nav2" else (_ros1, _nav2)))
     found = own.kinds()
-    # Of most images the level alone decides, and means the same: there is nothing to compare.
+    # In most images the level alone decides, and means the same by both rules, so nothing is compared.
     if own.of_pixels is other.of_pixels and np.array_equal(own.table, other.table):
         return found, ""
     others = other.kinds()
@@ -171,7 +171,7 @@ def _nav2(pixels: Pixels, image: Image.Image, meta: RosMapMeta) -> Levels:
     if meta.mode == "raw":
         percent = np.where(grey <= 100.0, grey / 100.0, np.nan)
         return Levels(levels, _between(percent <= meta.free_thresh, percent >= meta.occupied_thresh))
-    # In single precision, as map_server has it: a level that equals a threshold is decided by its rounding.
+    # In single precision, like map_server, because rounding decides about a level that equals a threshold.
     white, free, occupied = (np.float32(each) for each in (255.0, meta.free_thresh, meta.occupied_thresh))
     shade = grey / white
     occupancy = shade if meta.negate else np.float32(1.0) - shade
@@ -202,5 +202,5 @@ def _ros1(pixels: Pixels, image: Image.Image, meta: RosMapMeta) -> Levels:
 
 
 def _between(is_free: Bools, is_occupied: Bools) -> Kinds:
-    """Return what each level is: what is both is free, what is neither unknown."""
+    """Return the kind of each level: one that is both is free, one that is neither is unknown."""
     return np.where(is_free, _FREE, np.where(is_occupied, _OCCUPIED, _UNKNOWN)).astype(np.uint8)

@@ -1,4 +1,4 @@
-"""Maps of the MovingAI benchmarks: text files, a letter a cell."""
+"""Maps of the MovingAI benchmarks: text files with one letter per cell."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from evenroad.world.gridmap.images import LARGEST_IMAGE
 SUFFIX = ".map"
 """Suffix of such files."""
 _FREE = b".GS"
-"""Ground, and swamp, which ground leads into."""
+"""Ground, and swamp, which can be entered from ground."""
 _OCCUPIED = b"@OTW"
-"""Out of bounds, trees, and water, which nobody enters from the ground."""
+"""Out of bounds, trees, and water, which cannot be entered from ground."""
 _HEADER = ("type octile", "height H", "width W", "map")
 _LONGEST_HEADER = 1000
 """Largest number of bytes in which the header ends."""
@@ -34,7 +34,7 @@ def load_movingai_map(path: str | os.PathLike[str]) -> GridMap:
     file = Path(path)
     try:
         with open_file(file) as stream:
-            # The header comes first: it says how much there is to read.
+            # The header comes first, because it has the size of the rest.
             lines = [_line(stream.readline(_LONGEST_HEADER)) for _ in _HEADER]
             rows, columns = _size(lines, file)
             body = stream.read(rows * (columns + 2) + _LONGEST_HEADER)
