@@ -24,41 +24,40 @@ from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.path import path_length
 
 _STEP = 0.1
-"""Longest step along a motion in the metric of the joints."""
+"""Longest step along a motion, in the metric of the joints."""
 _AIM, _ENOUGH = 0.3, 0.5
-"""Lengths of residuals that a projection aims at, and that it needs, as shares of their limits: the rest is for motions
-between projected states."""
+"""Lengths of residuals that a projection aims at, and that it must reach, as shares of their limits.  The rest is for
+motions between projected states."""
 _STEPS, _FEW = 20, 12
-"""Largest number of steps of a projection, and of one of states along a motion."""
+"""Largest number of steps of a projection, and of one for states along a motion."""
 _LONGEST = 0.3
 """Largest movement of a joint in such a step [rad or m]."""
 _JUMP = 2.5
-"""Number of steps beyond which neighbouring projected states are of two branches."""
+"""Distance, in steps, above which neighbouring projected states belong to two branches."""
 _PARTS = 4
-"""Number of parts of a motion at whose ends residuals are measured; between them they are bounded."""
+"""Number of parts of a motion. Residuals are measured at their ends, and bounded between."""
 _SHORTCUTS, _ROUNDS, _LONGER = 24, 3, 0.1
-"""Numbers of motions that are tried to shorten a path and of the rounds in which they are, and by what share it must be
-longer than the straight one."""
+"""Numbers of motions and rounds of shortening, and the least excess over the straight motion, as a share."""
 TOLERANCE = 1e-6
 """Distance from contact down to which a step is proved free [m]."""
 _TOGETHER = 64
-"""Number of motions that are projected at once."""
+"""Number of motions that are projected together."""
 
 
 def keeps_of(constraints: Constraint | None) -> tuple[Keep, ...]:
-    """Return those of some constraints that hold along the whole path."""
+    """Return the constraints that hold along the whole path."""
     return tuple(each for each in (constraints.parts if constraints else ()) if isinstance(each, Keep))
 
 
 def kept_world(world: ArmWorld, keeps: tuple[Keep, ...], start: Floats, tip: str) -> KeptWorld:
-    """Return the world in which a path from `start`, (dim,), keeps constraints; those without a link, of `tip`."""
+    """Return the world in which a path from `start`, (dim,), keeps constraints; one without a link is about `tip`."""
     said = all(getattr(keep, "tip", "said") for keep in keeps)
     last = tip or ("" if said else default_tip(world.robot))
     return KeptWorld(world, tuple(keep.bound(world.robot, start, last) for keep in keeps))
 
 
 class ProjectedSpace(JointSpace):
-    """The joints' space, whose samples and interpolated points are projected to the constraints where that succeeds."""
+    """The joints' space with samples and interpolated points projected to the constraints, if that succeeds."""
 
     def projected_by(self, world: KeptWorld) -> ProjectedSpace:
         """Return a copy that projects in a world; frozen values need it."""
@@ -66,11 +65,11 @@ class ProjectedSpace(JointSpace):
         return self
 
     def from_cube(self, u: Floats) -> Floats:
-        """Return configurations, (n, dim), of points of the cube, (n, dim); those without a projection stay off."""
+        """Return configurations, (n, dim), for points of the cube, (n, dim); some may have no projection."""
         return self._on(super().from_cube(u))
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
-        """Return projected points between configurations, (n, dim) each; the ends as they are."""
+        """Return projected points between configurations, (n, dim) each; endpoints do not change."""
         share = np.broadcast_to(np.asarray(t, dtype=np.float64), len(a))
         q, inner = super().interpolate(a, b, t), (share > 0.0) & (share < 1.0)
         q[inner] = self._on(q[inner])
@@ -83,11 +82,10 @@ class ProjectedSpace(JointSpace):
 
 @dataclass(frozen=True, eq=False)
 class KeptWorld:
-    """The configurations of an arm's world that keep constraints, and motions that do.
+    """An arm's world restricted to configurations and motions that keep constraints.
 
-    Milestones are projected, and a motion is the straight one with its states projected, one by one: `along`.  It is
-    free if no state jumps to another branch, and of every step it is proved that nothing touches, and that residuals
-    stay within their limits.
+    Milestones are projected.  A motion is the straight one with its states projected, one by one: `along`.  It is free
+    if no state jumps to another branch, and each step is proved to have no contact and residuals within their limits.
 
     Attributes
     ----------
@@ -125,11 +123,11 @@ class KeptWorld:
 
     @property
     def bodies(self) -> str:
-        """The kinds of bodies that the robot touches obstacles with, see `Robot.bodies`."""
+        """The kinds of bodies that stand for the robot, see `Robot.bodies`."""
         return self.world.bodies
 
     def path_clearance(self, path: Floats) -> float | None:
-        """Return the distance from obstacles that a path, (p, dim), is proved to keep [m], as `ArmWorld`."""
+        """Return the proved distance of a path, (p, dim), from obstacles [m], as `ArmWorld` does."""
         return self.world.path_clearance(path)
 
     def nearest_along(self, path: Floats) -> tuple[str, str] | None:
@@ -144,7 +142,7 @@ class KeptWorld:
 
     @cached_property
     def step(self) -> float:
-        """Longest step along a motion: between two states residuals grow with its square."""
+        """Longest step along a motion; residuals between two states grow with its square."""
         return min(_STEP, *(math.sqrt(3.0 * keep.limit) for keep in self.keeps if keep.tips), _STEP)
 
     def shares(self, q: Floats) -> Floats:
@@ -152,16 +150,17 @@ class KeptWorld:
         return self.native.shares(np.ascontiguousarray(q))
 
     def projected(self, q: Floats, *, steps: int = _STEPS) -> tuple[Floats, Bools]:
-        """Return the configurations, (n, dim), moved to where all residuals are within a share of their limits, and
-        which succeeded (damped Gauss-Newton, Nakamura and Hanafusa 1986).
+        """Return configurations, (n, dim), projected to residuals within a share of their limits, and which succeeded.
+
+        The method is damped Gauss-Newton (Nakamura and Hanafusa 1986).
         """
         return self.native.project(np.ascontiguousarray(q), kernel.Projecting(_AIM, _ENOUGH, steps, _LONGEST))
 
     def bounds(self, path: Floats) -> Floats:
         """Return bounds on the residuals along each motion of a path, (n, dim), as shares of limits: (n - 1, c).
 
-        They are measured at some states.  Between two of these they exceed both by an eighth of the largest second
-        derivative times their distance squared at most (de Boor 1978, II).
+        They are measured at some states.  Between two states they exceed both values by at most an eighth of the
+        largest second derivative times the squared distance (de Boor 1978, II).
         """
         moved = self.space.flat.difference(path[:-1], path[1:])
         states = [path[:-1] + share * moved for share in np.arange(_PARTS) / _PARTS]
@@ -189,23 +188,21 @@ class KeptWorld:
         return free
 
     def along(self, a: Floats, b: Floats) -> Floats | None:
-        """Return the states of the motion between two configurations, (n, dim), with both; None where it
-        is not free.
-        """
+        """Return the states of the motion between two configurations, (n, dim), with both; None if it is blocked."""
         row, states = self.first_along(a[np.newaxis], b[np.newaxis])
         return states if row == 0 else None
 
     def first_along(self, a: Floats, b: Floats) -> tuple[int, Floats]:
-        """Return the number of the first free one of some motions, (m, dim) each, -1 for none, and its states."""
+        """Return the number of the first free motion, (m, dim) each, or -1, and its states."""
         good, motion, states = self._followed(a, b)
         row = int(good.argmax()) if good.any() else -1
         return row, states[motion == row]
 
     def _followed(self, a: Floats, b: Floats) -> tuple[Bools, Ints, Floats]:
-        """Return which motions are free, and the states of those, one after the other, and of which motion each is.
+        """Return which motions are free, the states of those in sequence, and the motion of each state.
 
-        Each walks to its end along the constraints; then others between these states are projected, which are near.
-        A motion and the one back are the same.
+        Each motion walks to its end along the constraints.  States between these are then projected, from nearby.  A
+        motion and its reverse have the same states.
         """
         world, flat, finer = self.world, self.space.flat, max(1, int(_STEP / self.step))
         back, given = is_backwards(a, b), (a, b)
@@ -216,7 +213,7 @@ class KeptWorld:
             states, counts = self.native.refine(states, counts, finer, self._walking(self.step))
         free = np.flatnonzero(counts)
         motion, states = np.repeat(np.arange(len(a)), counts), self.space.wrapped(states).copy()
-        # Sums round: the ends are as they were given.
+        # Sums round, so the given endpoints replace them.
         states[np.cumsum(counts[free]) - 1] = b[free]
         good = counts > 0
         drop_blocked(
@@ -230,7 +227,7 @@ class KeptWorld:
         return good, *turned_round(motion[rows], states[rows], back)
 
     def _walking(self, step: float) -> kernel.Walking:
-        """Return how compiled code walks by such steps."""
+        """Return the walk by such steps in compiled code."""
         projecting = kernel.Projecting(_AIM, _ENOUGH, _FEW, _LONGEST)
         return kernel.Walking(self.space.flat.scale, step, _JUMP, projecting)
 
@@ -245,7 +242,7 @@ class KeptWorld:
         return np.asarray(self.bounds(path).max(axis=0))
 
     def deviation(self, largest: Floats) -> dict[str, float]:
-        """Return by how much each constraint is off where residuals are such shares of limits, (c,)."""
+        """Return the deviation of each constraint, for residuals as shares of limits, (c,)."""
         off: dict[str, float] = {}
         for keep, share in zip(self.keeps, largest.tolist(), strict=True):
             by = float(keep.off(np.array([share * keep.limit]))[0])
@@ -253,8 +250,9 @@ class KeptWorld:
         return off
 
     def shortened(self, path: Floats) -> Floats:
-        """Return a path, (p, dim), made shorter by free motions between places along it, if it is much longer than the
-        straight motion, which may leave the constraints.
+        """Return a path, (p, dim), shortened by free motions between positions along it.
+
+        Nothing is tried unless the path is much longer than the straight motion, which may violate the constraints.
         """
         space = self.world.space
         least = (1.0 + _LONGER) * float(space.distance(path[:1], path[-1:])[0])
@@ -263,7 +261,7 @@ class KeptWorld:
             if travelled[-1] <= least:
                 break
             i, j = np.searchsorted(travelled, pairs.T * travelled[-1])
-            # What is hardly longer than the straight way cannot become much shorter.
+            # A path hardly longer than the straight motion cannot become much shorter.
             some = j - i > 1
             some[some] = travelled[j[some]] - travelled[i[some]] > 1.01 * space.distance(path[i[some]], path[j[some]])
             i, j = i[some], j[some]
@@ -279,25 +277,25 @@ class KeptWorld:
         return path
 
     def fingerprint(self) -> str:
-        """Return a text that is equal for worlds in which the same is free."""
+        """Return a text that is equal for worlds with the same free configurations."""
         return fingerprint_of("kept", self.world.fingerprint(), *self.keeps)
 
     def explain(self, q: Floats) -> str:
-        """Return, in words, why one configuration, (dim,), is not free: what touches, or which constraint it leaves."""
+        """Return in words why one configuration, (dim,), is not free: a contact, or a violated constraint."""
         shares = self.shares(q[np.newaxis])[0]
         return self.world.explain(q) if (shares <= 1.0).all() else self.exceeded(shares)
 
     def exceeded(self, shares: Floats) -> str:
-        """Return, in words, which residual, of (c,) shares of limits, is too large, and by how much."""
+        """Return in words which residual is too large, and by how much; `shares`, (c,), are those of the limits."""
         k = int(shares.argmax())
         keep = self.keeps[k]
         return keep.words(float(keep.off(np.array([shares[k] * keep.limit]))[0]))
 
 
 def drop_blocked(good: Bools, motion: Ints, *checks: Callable[[Ints], Bools]) -> None:
-    """Clear the entries of motions, in `good`, of which some step is not free; `motion` says of which each state is.
+    """Clear the entries in `good` of motions with a blocked step; `motion` is the motion of each state.
 
-    Each check returns which of some steps are free, by the number of the state that each begins with.
+    Each check returns which steps are free, given the numbers of the states at which they begin.
     """
     steps = np.flatnonzero(motion[1:] == motion[:-1])
     for is_free in checks:
@@ -307,21 +305,21 @@ def drop_blocked(good: Bools, motion: Ints, *checks: Callable[[Ints], Bools]) ->
 
 
 def turned_round(motion: Ints, states: Floats, back: Bools) -> tuple[Ints, Floats]:
-    """Return the states of motions with those in the other order, (m,), of which `back` says so; and their motions."""
+    """Return the states of motions, in reverse order for those in `back`, (m,), and the motion of each state."""
     number, until = np.arange(len(motion)), np.searchsorted(motion, motion, "right")
     begins = np.searchsorted(motion, motion, "left")
     return motion, states[np.where(back[motion], begins + until - 1 - number, number)]
 
 
 def is_backwards(a: Floats, b: Floats) -> Bools:
-    """Return which rows of `a` come after those of `b`, (m, dim) each, in the order of a dictionary."""
+    """Return which rows of `a` come after those of `b`, (m, dim) each, in lexicographic order."""
     moved = b - a
     number = (moved != 0.0).argmax(axis=1)
     return np.asarray(moved[np.arange(len(a)), number] < 0.0)
 
 
 def _without(states: Floats, counts: Ints, off: Bools) -> tuple[Floats, Ints]:
-    """Return the states of motions, and how many each has, without motions that have a state which is off."""
+    """Return the states of motions, and the number of each, without motions that have a state in `off`."""
     motion = np.repeat(np.arange(len(counts)), counts)
     good = np.ones(len(counts), dtype=np.bool_)
     good[motion[off]] = False
@@ -329,7 +327,7 @@ def _without(states: Floats, counts: Ints, off: Bools) -> tuple[Floats, Ints]:
 
 
 def kept_line(world: KeptWorld, line: Followed) -> Followed:
-    """Return a followed line or curve, without its path where that does not keep the constraints."""
+    """Return a followed line or curve, without its path if that violates the constraints."""
     if len(line.path) < 2:
         return line
     largest = world.largest(line.path)

@@ -1,4 +1,4 @@
-"""DrivenWorld: an arm on a base that drives along its heading and turns in place, and cannot go sideways."""
+"""DrivenWorld: an arm on a base that drives along its heading and turns in place, but cannot go sideways."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from evenroad.poses.constraint import Constraint
 from evenroad.robots.robot import Robot
 
 _HALF_TURNS = np.arange(-4, 5) * math.pi
-"""Angles added to the direction of a drive: forwards or backwards, in every turn that a heading may have."""
+"""Angles added to the direction of a drive: forwards or backwards, for every turn of a heading."""
 _STILL = 1e-9
 """Distance below which a base does not drive [m]."""
 
@@ -24,8 +24,8 @@ _STILL = 1e-9
 class DifferentialDrive(Constraint):
     """A base drives forwards or backwards along its heading, and turns in place: it cannot go sideways.
 
-    Every motion turns, drives straight while the other joints move, and turns again.  Where the heading is 0 the base
-    looks along x.  It goes without other constraints.
+    Every motion turns, drives straight while the other joints move, and turns again.  At heading 0 the base faces
+    along x.  It cannot be combined with other constraints.
 
     Parameters
     ----------
@@ -84,14 +84,14 @@ class DrivenWorld(KeptWorld):
         return good, *turned_round(motion[rows], flat[rows], back)
 
     def shortened(self, path: Floats) -> Floats:
-        """Return a path, (p, dim), made shorter as by `KeptWorld`, with turns that follow each other made one."""
+        """Return a path, (p, dim), shortened as by `KeptWorld`, with successive turns joined into one."""
         path = super().shortened(path)
         others = np.delete(path, self.base[2], axis=1)
         turns = (others[1:] == others[:-1]).all(axis=1)
         kept = np.ones(len(path), dtype=np.bool_)
         kept[1:-1] = ~(turns[:-1] & turns[1:])
         rows = np.flatnonzero(kept)
-        # In a joint without limits the one turn may go the other way round, which is not known to be free.
+        # If the joint has no limits, the joined turn may go in the other direction, which is not known to be free.
         free = self.world.motion_certified(path[rows[:-1]], path[rows[1:]], TOLERANCE)
         for first, last in zip(rows[:-1][~free], rows[1:][~free], strict=True):
             kept[first:last] = True
@@ -100,8 +100,9 @@ class DrivenWorld(KeptWorld):
         return path[np.concatenate([moved, [True]])] if moved.any() else path
 
     def _headings(self, a: Floats, b: Floats) -> Floats:
-        """Return the headings, (m,), of drives from rows of `a` to those of `b`, of the least turning; infinite where
-        limits leave none.
+        """Return the headings, (m,), of drives from rows of `a` to those of `b` with the least turning.
+
+        They are infinite if limits allow none.
         """
         x, y, heading = self.base
         gap = b[:, [x, y]] - a[:, [x, y]]
@@ -115,7 +116,7 @@ class DrivenWorld(KeptWorld):
         else:
             within = (each >= self.space.low[heading]) & (each <= self.space.high[heading])
             turning = np.where(within, turns.sum(axis=0), np.inf)
-        # Rounded, so that rounding errors do not choose between equal turns.
+        # Rounded, so that rounding errors do not decide between equal turns.
         best = np.round(turning, 9).argmin(axis=0)
         number = np.arange(len(a))
         chosen = np.where(np.isfinite(turning[best, number]), each[best, number], np.inf)

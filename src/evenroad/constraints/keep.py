@@ -1,8 +1,8 @@
 """Base of the constraints that hold along a whole path.
 
-A constraint has a residual, a vector whose length is how far it is off, and which may be `limit` long.  Residuals are
-affine in the rotation and the origin of tips, or distances from them, so that along a motion their length is convex but
-for a second derivative, which `bend` bounds by how the tips move.
+A constraint has a residual, a vector whose length is the deviation, and may be up to `limit`.  Residuals are affine in
+the rotation and origin of tips, or distances from such.  Along a motion their length is thus convex up to a second
+derivative, which `bend` bounds from the motion of the tips.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from evenroad._native.robot import KeepKind
 
 WITHIN = 1e-4
-"""Default for how far a tip may be off [m]."""
+"""Default of the largest deviation of a tip [m]."""
 
 
 class Keep(Constraint):
@@ -33,16 +33,16 @@ class Keep(Constraint):
     deviation: ClassVar[str]
     """Name in the deviations of a result."""
     kept: ClassVar[str] = ""
-    """What it keeps, in words."""
+    """The kept quantity, in words."""
     within: float
 
     def bound(self, robot: Robot, q: Floats, tip: str) -> Keep:
-        """Return the constraint with what it leaves open, taken from a start, (dim,), and a tip."""
+        """Return the constraint with unset fields filled from a start, (dim,), and a tip."""
         raise NotImplementedError
 
     @property
     def tips(self) -> tuple[str, ...]:
-        """The links that it is about."""
+        """The constrained links."""
         return (self.tip,)  # type: ignore[attr-defined]
 
     @property
@@ -52,13 +52,13 @@ class Keep(Constraint):
 
     @property
     def residual(self) -> tuple[KeepKind, Floats]:
-        """Its residual for compiled code: of which kind it is, and the numbers, (k,), that it is made of.
+        """Its residual for compiled code: a kind, and its parameters, (k,).
 
-        ``linear``: rows, each of twelve coefficients of the tip's pose, and what is taken off.  ``box``: the way of the
-        tip's origin out of a box, by its low and high corner.  ``circle``: the distance from the circle and its plane,
-        and a tenth of how far the tip is from turning with it.  ``together``: the shift of the second tip from where
-        the first one holds it, and a tenth of its turn, by the pose that it holds.  ``joints``: how far joints are
-        outside of their ranges, lows and highs of all.
+        ``linear``: rows of twelve coefficients of the tip's pose, and a constant to subtract.  ``box``: the distance of
+        the tip's origin from a box; parameters are its low and high corner.  ``circle``: the distance from a circle and
+        its plane, and a tenth of the tip's rotation away from the turn of the circle.  ``together``: the shift of the
+        second tip from its place relative to the first, and a tenth of its rotation; the parameter is the relative
+        pose.  ``joints``: distances of joints from their ranges; parameters are lows and highs of all joints.
         """
         raise NotImplementedError
 
@@ -67,11 +67,11 @@ class Keep(Constraint):
         raise NotImplementedError
 
     def off(self, lengths: Floats) -> Floats:
-        """Return by how much it is off, in its unit, where residuals have these lengths."""
+        """Return the deviation, in its unit, for residuals of these lengths."""
         return lengths
 
     def words(self, off: float) -> str:
-        """Return, in words, that it is off by so much, and how much it may be."""
+        """Return in words the deviation, and its limit."""
         return f"{self.tips[0]!r} is {off:.4g} {self.unit} off {self.kept}, more than {self.within:.4g}"
 
 
@@ -81,11 +81,11 @@ def tip_row(robot: Robot, tip: str, q: Floats) -> tuple[float, ...]:
 
 
 def tip_pose(robot: Robot, tip: str, q: Floats) -> Pose:
-    """Return the same as a value."""
+    """Return the pose of a tip at a configuration, (dim,)."""
     row = tip_row(robot, tip, q)
     return Pose(row[9:], row[:9])
 
 
 def pose_row(pose: Pose) -> list[float]:
-    """Return a pose as compiled code takes it: its rotation row by row, and its origin."""
+    """Return a pose in the form of compiled code: its rotation row by row, and its origin."""
     return [*pose.rotation, *pose.xyz]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class KeepOnCircle(Keep):
-    """A link moves with a door: its origin on a circle about the hinge, turned as the door is.
+    """A link moves with a door: its origin stays on a circle about the hinge, and it turns with the door.
 
     Parameters
     ----------
@@ -95,8 +95,8 @@ class KeepOnCircle(Keep):
         return "circle", np.concatenate([*self.frame, [self.radius], pose_row(self.pose)])
 
     def bend(self, moves: Sequence[Moves]) -> Floats:
-        # The distance from the hinge bends at most as the tip does, plus its squared speed over that distance; the
-        # door's angle as a polar angle.  Nearer than half the radius no motion is within the limit anyway.
+        # The second derivative of the distance from the hinge is at most that of the tip, plus its squared speed over
+        # that distance. The door's angle is a polar angle. No motion within the limit is nearer than half the radius.
         (tip,), near = moves, 0.5 * self.radius
         rate = tip.speed / near
         swing = tip.push / near + 2.0 * rate**2
@@ -105,14 +105,14 @@ class KeepOnCircle(Keep):
 
 @dataclass(frozen=True)
 class KeepTogether(Keep):
-    """Two links keep their pose to each other, as two hands that hold one box.
+    """Two links keep their relative pose, like two hands that hold one box.
 
     Parameters
     ----------
     first, second : str
         The links.
     within : float
-        Largest distance of the second from where it is held by the first, > 0 [m].  It may turn by ten times as much
+        Largest distance of the second from its place relative to the first, > 0 [m].  It may turn by ten times as much
         [rad].
     pose : Pose, optional
         Pose of the second in the frame of the first; default: that at the start.
@@ -175,9 +175,9 @@ class KeepJoints(Keep):
     ranges : mapping of str to (low, high)
         Joint -> range [rad or m].
     within : float
-        How far outside a joint may be [rad or m].
+        Largest excess of a joint over its range [rad or m].
     joints : tuple of str
-        All joints of the robot; taken from it.
+        All joints of the robot; filled from it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Constraints as texts, as files and commands have them: ``line y within=0.001``."""
+"""Constraints from texts in files and commands: ``line y within=0.001``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ KINDS: dict[str, tuple[Callable[..., Constraint], tuple[str, ...], int, tuple[st
     "together": (KeepTogether, ("first", "second"), 2, ("within",)),
     "differential-drive": (DifferentialDrive, (), 0, ("x", "y", "heading")),
 }
-"""First word -> the constraint, what its next words are, how many of these it needs, and what it has by name."""
+"""First word -> the constraint, its positional words, how many of these it needs, and its keywords."""
 
 _Value = str | float | tuple[float, ...]
 _POINTS = ("through", "low", "high", "centre")
@@ -30,7 +30,7 @@ _NAMES = ("tip", "first", "second", "x", "y", "heading")
 
 
 def constraint_of(text: str, *, degrees: bool = False) -> Constraint:
-    """Return a constraint from its text: a kind, what it needs, and ``name=value`` for what it may have.
+    """Return a constraint from its text: a kind, its required values, and ``name=value`` for optional ones.
 
     ::
 
@@ -44,12 +44,12 @@ def constraint_of(text: str, *, degrees: bool = False) -> Constraint:
         differential-drive x=base/x y=base/y heading=base/theta
         joints elbow_joint=0,2.5
 
-    Points are of metres with commas between; angles are in radians, or in degrees.
+    Points are in metres, separated by commas; angles are in radians, or in degrees.
 
     Raises
     ------
     InvalidValue, UnknownName
-        For a text that is none, a kind or a name that there is not, or what the constraint itself refuses.
+        For an empty text, an unknown kind or name, or values that the constraint refuses.
     """
     words = text.split()
     if not words:

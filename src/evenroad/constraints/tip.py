@@ -27,20 +27,20 @@ UP = (0.0, 0.0, 1.0)
 
 
 def _chord(angle: float) -> float:
-    """Return the distance of two directions at an angle."""
+    """Return the length of the chord between two directions at an angle."""
     return 2.0 * math.sin(0.5 * angle)
 
 
 @dataclass(frozen=True)
 class KeepUpright(Keep):
-    """An axis of a link stays upright, as when it carries a glass.
+    """An axis of a link stays upright, for instance to carry a glass.
 
     Parameters
     ----------
     within : float
         Largest tilt, > 0, up to pi [rad].
     axis : sequence of 3 floats, "x", "-x", ..., or None
-        The axis in the frame of the tip; None is the one of the six that is most upright at the start.
+        The axis in the frame of the tip; None: the coordinate axis, of six, that is most upright at the start.
     tip : str
         The link of the tip; default: that of the goal poses, or the last one.
 
@@ -167,7 +167,7 @@ class KeepInPlane(Keep):
     normal : sequence of 3 floats, or "x", "y", "z"
         Normal of the plane in the frame of the root.
     through : sequence of 3 floats, optional
-        A point of it [m]; default: where the link is at the start.
+        A point of it [m]; default: the link's origin at the start.
     within : float
         Largest distance, > 0 [m].
     tip : str
@@ -203,7 +203,7 @@ class KeepInPlane(Keep):
 
     @property
     def across(self) -> Floats:
-        """Directions in which it may not leave, (m, 3)."""
+        """Directions in which it must not move, (m, 3)."""
         return np.array(self.normal, dtype=np.float64)[np.newaxis]
 
     @property
@@ -226,7 +226,7 @@ class KeepOnLine(KeepInPlane):
     normal : sequence of 3 floats, or "x", "y", "z"
         Direction of the line in the frame of the root.
     through, within, tip
-        As of :class:`KeepInPlane`.
+        As for :class:`KeepInPlane`.
 
     Raises
     ------

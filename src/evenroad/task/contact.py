@@ -1,4 +1,4 @@
-"""How near a gripper is to an object, and what of an object must stay free where contacts of it are allowed."""
+"""The distance of a gripper from an object, and the core of an object that must stay free when contacts are allowed."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from evenroad.robots.robot import Robot
 from evenroad.scenes.scene import Scene
 
 _LEAST = 0.2
-"""Share of its size that is left of an object however deep its contacts may be."""
+"""Least size of an object's core, as a share of the object, for any allowed depth of contacts."""
 _NEAREST, _FARTHEST, _HALVINGS = 1e-4, 1.0, 12
-"""Shifts of an obstacle that are tried to free a configuration: the least and the largest one [m], and the number of
-times that the range between the last two is halved."""
+"""Shifts of an obstacle to try to free a configuration: the least and the largest one [m], and the number of times that
+the range between the last two is halved."""
 _SAMPLES = 9
-"""Number of points on each capsule from which an object is looked for."""
+"""Number of points on each capsule for the distance to an object."""
 
 
 def core_of(body: Shape, depth: float, *, as_capsule: bool) -> Shape | None:
-    """Return what lies at least `depth` [m] inside of a body; None where nothing is known to.
+    """Return the part of a body that is at least `depth` [m] inside; None if no part is known.
 
-    A mesh is scaled towards its middle.  With `as_capsule` the result is one capsule: for robots whose
-    bodies are capsules, where a body held has capsules around it.
+    A mesh is scaled towards its middle.  With `as_capsule` the result is one capsule.  This is for robots whose bodies
+    are capsules, where a held body has capsules around it.
     """
     if as_capsule or isinstance(body, PointCloud):
         inside = max(capsules_inside(body), key=lambda each: each.radius, default=None)
@@ -63,9 +63,9 @@ def core_of(body: Shape, depth: float, *, as_capsule: bool) -> Shape | None:
 
 
 def distance_of(body: Shape, robot: Robot, q: Floats, links: Collection[str]) -> float:
-    """Return how far a body is from the nearest of some links at a configuration, (dim,): no less than it is [m].
+    """Return an upper bound of a body's distance from the nearest of some links at a configuration, (dim,) [m].
 
-    Links are their frames and capsules; meshes and clouds are their corners and points.
+    It is measured from the frames and capsules of links, and to corners of meshes and points of clouds.
     """
     poses = link_poses(robot, q[np.newaxis])[0]
     shares = np.linspace(0.0, 1.0, _SAMPLES)[:, np.newaxis]
@@ -86,9 +86,10 @@ def distance_of(body: Shape, robot: Robot, q: Floats, links: Collection[str]) ->
 
 
 def depth_in(world: ArmWorld, q: Floats) -> float | None:
-    """Return how far the obstacles that the robot touches at a configuration, (dim,), had to be moved along the axis of
-    the root that needs least, so that it is free of each [m]; None where a metre does not free it, or it touches
-    itself.
+    """Return the depth of a configuration, (dim,), in obstacles [m]; None if a metre does not free it.
+
+    Each obstacle that the robot touches is moved along an axis of the root until the robot is free of it.  The depth is
+    that of the axis with the shortest move.  It is also None if the robot touches itself.
     """
     deep, scene = 0.0, world.scene
     for each in scene.obstacles:
@@ -103,7 +104,7 @@ def depth_in(world: ArmWorld, q: Floats) -> float | None:
 
 
 def _free_from(world: ArmWorld, alone: Scene, q: Floats, direction: Floats) -> float:
-    """Return how far the obstacle of a scene is to be moved in a direction until a configuration is free [m]."""
+    """Return the distance to move the obstacle of a scene in a direction until a configuration is free [m]."""
     (obstacle,) = alone.obstacles
 
     def frees(metres: float) -> bool:

@@ -1,4 +1,4 @@
-"""The curve of a step, from where the tip is."""
+"""The curve of a step, from the tip's pose."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from evenroad.poses.pose_goal import as_pose_goal
 from evenroad.task.steps import AlongCurve, MoveAlong, MoveCircular, MoveLinear
 
 _THERE = 1e-9
-"""Distance below which a pose is where the tip is already [m, and of the entries of the rotation]."""
+"""Distance below which the tip is already at a pose [m, and of the entries of the rotation]."""
 
 
 def follower_of(step: AlongCurve, world: ArmWorld, q: Floats, reading: Reading, where: str) -> Follower | None:
-    """Return the tip that follows a step's curve from a configuration, (dim,); None where it is there already.
+    """Return the tip that follows a step's curve from a configuration, (dim,); None if it is already at the end.
 
-    Raises InvalidValue for a circle whose points are on a line, UnknownName for a tip that is none.
+    Raises InvalidValue for a circle whose points are on a line, UnknownName for an unknown tip.
     """
     given = {MoveLinear: ("pose",), MoveCircular: ("via", "to")}.get(type(step))
     poses = step.poses if isinstance(step, MoveAlong) else [getattr(step, name) for name in given or ()]
@@ -51,7 +51,7 @@ def _curve(step: AlongCurve, points: list[Pose]) -> Curve:
 
 
 def _apart(poses: list[Pose]) -> list[Pose]:
-    """Return poses without those that repeat the one before."""
+    """Return poses without repetitions of the one before."""
     kept = poses[:1]
     for pose in poses[1:]:
         gap = np.abs(np.subtract([*pose.xyz, *pose.rotation], [*kept[-1].xyz, *kept[-1].rotation])).max()

@@ -1,4 +1,4 @@
-"""Motions of a task: what of each is fixed before it is planned, straight lines and curves, and the plan of it all."""
+"""Motions of a task: the fixed lines and curves of each, and the plan of the path between."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ PlanBetween = Callable[[Problem, Constraint | None], PlanResult]
 class Motion:
     """The plans of a motion's parts, and the row of the goal that it ends at.
 
-    Without a motion the only part says why, and `goal` is None.  `constraints` are those of its step, with the name of
-    the link that they constrain; `speed` is the largest speed of the link `tip`, if its step has one [m/s].
+    If there is no motion, the only part says why, and `goal` is None.  `constraints` are those of its step, with the
+    name of the constrained link.  `speed` is the largest speed of the link `tip`, if its step has one [m/s].
     """
 
     parts: tuple[PlanResult, ...]
@@ -43,14 +43,14 @@ class Motion:
 
     @property
     def end(self) -> Floats:
-        """Where it ends, (dim,)."""
+        """Its last configuration, (dim,)."""
         path = self.parts[-1].path
         assert path is not None, "only of a motion that was found"
         last: Floats = path[-1]
         return last
 
     def gone_on(self, at: Floats) -> Motion:
-        """Return the motion from the numbers of a configuration on, (dim,), up to whole turns where it begins."""
+        """Return the motion shifted by whole turns to begin at the exact numbers of a configuration, (dim,)."""
         parts: list[PlanResult] = []
         for part in self.parts:
             parts.append(_turned(part, at))
@@ -64,7 +64,7 @@ class Motion:
 class Leg:
     """A choice for one motion: its fixed parts before and after the path that is planned between them.
 
-    Without a `between` all is fixed.  `planned` keeps the motion once it is.
+    Without a `between`, all is fixed.  `planned` stores the motion once it is planned.
     """
 
     end: Floats
@@ -76,7 +76,7 @@ class Leg:
 
     @cached_property
     def cost(self) -> float:
-        """Length of the fixed parts and of the straight way between: no motion of this choice is shorter."""
+        """Length of the fixed parts and of the straight motion between; no motion of this choice is shorter."""
         total = sum(each.cost or 0.0 for each in (*self.before, *self.after))
         if self.between is not None:
             space = self.between.world.space
@@ -105,12 +105,11 @@ class Leg:
 def choices(
     problem: Problem, worlds: tuple[ArmWorld, ArmWorld], step: MoveTo, tip: str, *, last: bool
 ) -> Iterator[Leg | PlanResult]:
-    """Yield the choices of a motion to goals, the nearest first but one for each pose before a second for any, or why
-    there is none.
+    """Yield the choices of a motion to goals, nearest first, or why there is none.
 
-    The line from the start and the path between the lines are in two `worlds`, lines to goals in that of the problem.
-    They are lines of `tip`; default: that of the goals, or the last link.  Nothing depends on where the `last` motion
-    of a task ends: without lines its choice is left to the planner.
+    Each pose gets one choice before any pose gets a second.  The line from the start and the path between the lines are
+    in two `worlds`; lines to goals are in that of the problem.  They are lines of `tip`; default: that of the goals, or
+    the last link.  Nothing depends on the end of a task's `last` motion, so without lines the planner chooses it.
     """
     look_at_clock()
     at_start, between = worlds
@@ -120,7 +119,7 @@ def choices(
     tip = problem.tip or tip
     straight = step.line(tip or default_tip(problem.arm.robot)) if step.approach or step.retreat else None
     if step.constraints is not None:
-        # The path between lines has no goal pose to take a tip from.
+        # The path between lines has no goal pose, and therefore no tip.
         last_link = tip or default_tip(problem.arm.robot)
         step = replace(step, constraints=with_tip(step.constraints, last_link))
     if straight is None and last:
@@ -149,14 +148,14 @@ def choices(
 
 
 def along(world: ArmWorld, followed: Followed, motion: Motion) -> Leg:
-    """Return the motion along a curve, whose parts end where it stops."""
+    """Return the motion along a curve; it has one part between two stops."""
     rows = [0, *followed.stops, len(followed.path) - 1]
     parts = [_part(world, replace(followed, path=followed.path[a : b + 1]), "curve") for a, b in pairwise(rows)]
     return Leg(followed.path[-1], tuple(parts), None, (), motion)
 
 
 def _turned(part: PlanResult, at: Floats) -> PlanResult:
-    """Return a plan by whole turns from where it was, from the numbers of a configuration on, (dim,)."""
+    """Return a plan shifted by whole turns to begin at the exact numbers of a configuration, (dim,)."""
     assert part.world is not None, "only of a motion that was planned"
     assert part.path is not None, "only of a motion that was found"
     path = continued(part.path, part.world.space, at)
@@ -166,7 +165,7 @@ def _turned(part: PlanResult, at: Floats) -> PlanResult:
 
 
 def _in_turn(problem: Problem, first: Floats) -> list[int]:
-    """Return the rows of goals, the nearest first: the best one of each pose, then the second one, and so on."""
+    """Return the rows of goals: the nearest one for each pose, nearest first, then the second one, and so on."""
     goals = problem.goals
     away = problem.world.space.distance(np.broadcast_to(first, goals.shape), goals)
     poses = [] if problem.given is None else [len(reached.configurations) for _, reached in problem.given.poses]
@@ -182,7 +181,7 @@ def _in_turn(problem: Problem, first: Floats) -> list[int]:
 def _line(
     world: ArmWorld, problem: Problem, step: MoveTo, straight: CartesianLine, q: Floats, length: float
 ) -> Followed:
-    """Return the straight line from a configuration, which keeps the constraints of the step."""
+    """Return the straight line from a configuration that keeps the constraints of the step."""
     look_at_clock()
     if not world.valid(q):
         return Followed(q[np.newaxis], world.explain(q))

@@ -20,7 +20,7 @@ from evenroad.trajectory.limits import Limits, TipLimits, limits_of
 from evenroad.trajectory.trajectory import Trajectory
 
 CURVE_DEVIATION = 5e-5
-"""Largest distance of a trajectory from its path along a curve, by default [rad or m]: the tip stays near the curve."""
+"""Default of a trajectory's largest distance from its path along a curve [rad or m], to keep the tip near the curve."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -30,20 +30,20 @@ class TaskResult:
     Attributes
     ----------
     steps : tuple
-        Those of the task.
+        The steps of the task.
     status : Status
-        That of the step that failed, else ``solved``.
+        Status of the step that failed, else ``solved``.
     message : str
         One sentence: what happened, or which step cannot be done and why.
     motions : tuple of Motion
-        Of each motion the plans of its `parts`: lines, curves, and the path between them, each in its own world.  What
-        is held is a body of the robot there.
+        The motions. The `parts` of each are plans of lines, curves, and the path between them, each in its own world.
+        A held object is a body of the robot there.
     step : int or None
-        Number of the step that failed, from 0 on.
+        Number of the step that failed, from 0.
     timings : dict of str to float
         Wall time [s].
     tried : int
-        Number of choices for motions that were looked at, those that were given up included.
+        Number of choices for motions that were tried, including dropped ones.
 
     Examples
     --------
@@ -90,12 +90,12 @@ class TaskResult:
         return f"TaskResult(solved, {len(self.steps)} steps, cost {self.cost:.4g})"
 
     def trajectory(self, **options: Any) -> Trajectory:
-        """Return one trajectory through all steps, which stands still where the gripper acts, and where a line ends.
+        """Return one trajectory through all steps. It stops where the gripper acts, and where a line ends.
 
         Parameters
         ----------
         **options
-            As of :meth:`evenroad.PlanResult.trajectory`; each motion is checked in its own world, and keeps the
+            Options of :meth:`evenroad.PlanResult.trajectory`.  Each motion is checked in its own world, and keeps the
             constraints of its step unless others are given.
 
         Returns
@@ -105,7 +105,7 @@ class TaskResult:
         Raises
         ------
         InvalidValue, NotAvailable
-            As that; InvalidValue also if the task is not solved.
+            Errors of that method; InvalidValue also if the task is not solved.
 
         Examples
         --------
@@ -126,7 +126,7 @@ class TaskResult:
             if not isinstance(step, Move):
                 continue
             motion = next(motions)
-            # A motion to where the arm is takes no time.
+            # A motion to the current configuration takes no time.
             for part in (part for part in motion.parts if part.cost):
                 parts.append(part.trajectory(**_kept(motion, part, options)))
                 pauses, pause = [*pauses, pause], 0.0
@@ -136,7 +136,7 @@ class TaskResult:
 
 
 def _kept(motion: Motion, part: PlanResult, options: dict[str, Any]) -> dict[str, Any]:
-    """Return the options of a part's trajectory, with what its motion keeps unless others are given."""
+    """Return the options of a part's trajectory, with its motion's constraints unless others are given."""
     kept: dict[str, Any] = {} if motion.constraints is None else {"constraints": motion.constraints}
     if part.planner == "curve":
         kept["deviation"] = CURVE_DEVIATION
@@ -149,7 +149,7 @@ def _kept(motion: Motion, part: PlanResult, options: dict[str, Any]) -> dict[str
 
 
 def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
-    """Return trajectories one after the other, each after its pause, and a last pause."""
+    """Return trajectories in sequence, each after its pause, and a last pause."""
     if not parts:
         raise InvalidValue("there is no trajectory: the arm stays where it is")
     step = parts[0].step

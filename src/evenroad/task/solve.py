@@ -1,4 +1,4 @@
-"""Planning a task: choices for all its motions first, the cheapest of which are then planned."""
+"""Planning of tasks: choices for all motions are found first, and the cheapest ones are then planned."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from evenroad.task.stage import Contacts, Stage, touches
 from evenroad.task.steps import AlongCurve, Attach, Detach, Move, MoveTo, Step, Wait
 
 WIDTHS = 2, 8, 32
-"""Numbers of choices of a motion that are gone on with; more, where with fewer the task cannot be done."""
+"""Numbers of choices kept for each motion; a larger one is tried if a smaller one does not suffice."""
 
 
 @dataclass(eq=False)
 class _Branch:
-    """A stage of the task before the step `number`, and the choices that led there; later ones are found one by one."""
+    """A stage of the task before the step `number`, and the choices that led there; later choices are found lazily."""
 
     stage: Stage
     number: int
@@ -48,7 +48,7 @@ class _Branch:
 
     @property
     def failed(self) -> bool:
-        """Whether one of its motions was planned in vain."""
+        """Whether the plan of one of its motions failed."""
         return any(leg.planned is not None and not leg.planned.parts[-1].solved for leg in self.legs)
 
 
@@ -64,7 +64,7 @@ class _Search:
     why: PlanResult | None = None
 
     def whole(self, first: _Branch, width: int) -> list[_Branch]:
-        """Return choices for all motions, the cheapest first; of each motion `width` are gone on with."""
+        """Return choices for all motions, cheapest first, with `width` choices kept for each motion."""
         level = [first]
         while any(isinstance(step, Move) for step in self.steps[level[0].number :]):
             begun = (branch for branch in level if not self.deadline.is_over)
@@ -78,7 +78,7 @@ class _Search:
         return level
 
     def note(self, number: int, why: PlanResult) -> None:
-        """Keep why a step cannot be done: of failures the one that comes after most steps says most."""
+        """Store why a step cannot be done; the failure after most steps says most."""
         if number > self.deepest:
             self.deepest, self.why = number, why
 
@@ -105,7 +105,7 @@ class _Search:
             yield _Branch(after, number + 1, (*branch.legs, choice), branch.cost + choice.cost)
 
     def _acted(self, branch: _Branch) -> tuple[int, Stage]:
-        """Return the number of the next motion of a branch, and its stage after what the gripper does before."""
+        """Return the number of the next motion of a branch, and its stage after the gripper's actions before it."""
         stage = branch.stage
         for number, step in enumerate(self.steps[branch.number :], branch.number):
             where = f"step {number} of the task"
@@ -119,10 +119,10 @@ class _Search:
 
     def _goals(self, number: int, stage: Stage, step: MoveTo, last: bool) -> Iterator[Leg | PlanResult]:
         look_at_clock()
-        # Each line has contacts of its own: what is lifted from a table may not end inside it.
+        # Each line has its own contacts, so that an object lifted from a table may not end inside it.
         worlds = stage.with_contacts(stage.near_start), stage.world
         problem = problem_in(self._near_goal(number, stage), stage.q, step.goal, self.reading)
-        # Lines are those of the goal's tip, else of the link that took something last.
+        # Lines are those of the goal's tip, else of the link that attached an object last.
         taken = [each.link for each in self.steps[:number] if isinstance(each, Attach) and each.link]
         return choices(problem, worlds, step, self.reading.tip or (taken[-1] if taken else ""), last=last)
 
@@ -144,7 +144,7 @@ class _Search:
         yield along(world, done, Motion((), 0, speed=step.speed, tip=follower.chain.tip))
 
     def _near_goal(self, number: int, stage: Stage, contacts: Contacts = frozenset()) -> ArmWorld:
-        """Return the world without some contacts, nor those of the line to a goal, where the gripper acts there."""
+        """Return the world without some contacts, and without those of the line to a goal at which the gripper acts."""
         after = next((step for step in self.steps[number + 1 :] if not isinstance(step, Wait)), None)
         depths: dict[str, float] = {}
         if isinstance(after, Attach):
@@ -178,7 +178,7 @@ def plan_task(
     deadline = Deadline.after(budget.seconds)
 
     def plan_between(problem: Problem, constraints: Constraint | None) -> PlanResult:
-        # Half of what is left, so that another choice has time, too.
+        # Half of the remaining time, so that another choice has time, too.
         rest = budget if budget.seconds is None else replace(budget, seconds=max(0.5 * deadline.left, 1e-3))
         with within(rest.seconds):
             return solve(replace(problem, budget=rest, smooth=smooth, rng=rng, constraints=constraints))
@@ -208,7 +208,7 @@ def plan_task(
 
 
 def _motions(search: _Search, first: _Branch, plan_between: PlanBetween) -> tuple[Motion, ...] | None:
-    """Return the motions of the cheapest choices that can be planned, of more and more choices; None without any."""
+    """Return the motions of the cheapest choices that can be planned, from increasing numbers of choices, or None."""
     for width in WIDTHS:
         for branch in search.whole(first, width):
             look_at_clock()
@@ -219,7 +219,7 @@ def _motions(search: _Search, first: _Branch, plan_between: PlanBetween) -> tupl
 
 
 def _planned(search: _Search, branch: _Branch, start: Floats, plan_between: PlanBetween) -> tuple[Motion, ...] | None:
-    """Return the motions of a branch from the start on, (dim,); None where one cannot be planned."""
+    """Return the motions of a branch from the start, (dim,); None if one cannot be planned."""
     numbers = [number for number, step in enumerate(search.steps) if isinstance(step, Move)]
     motions, at = [], start
     for number, leg in zip(numbers, branch.legs, strict=True):

@@ -1,4 +1,4 @@
-"""Stage: where an arm stands between two steps of a task, what it holds, and what is around it."""
+"""Stage: the state of an arm between two steps of a task: its configuration, held objects and surroundings."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from evenroad.task.steps import Attach, Detach
 Contacts = frozenset[tuple[str, str]]
 
 _TO_HOLD = 8e-3
-"""Seconds that it takes to make the tables of a robot that holds something."""
+"""Time to make the tables of a robot that holds an object [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
     """A world, and the configuration of its arm, (dim,).
 
-    `near_start` are contacts, (link, obstacle), that are not tested on the straight line of the next motion from here:
-    of the gripper with what it has put down, of what it has taken with what that stood on.  `empty` is the robot with
-    nothing attached by the task, `depths` says how deep such contacts of what is held may be, and `clearances` what an
-    object keeps from the robot where it is put down [m].
+    `near_start` are contacts, (link, obstacle), that are not tested on the straight line of the next motion from here.
+    They are those of the gripper with an object that it has put down, and of an attached object with its support.
+    `empty` is the robot without objects that the task attached.  `depths` are the allowed depths of such contacts of a
+    held object, and `clearances` those that an object keeps from the robot after it is put down [m].
     """
 
     world: ArmWorld
@@ -47,11 +47,11 @@ class Stage:
     clearances: Mapping[str, float] = field(default_factory=dict)
 
     def with_contacts(self, contacts: Contacts, depths: Mapping[str, float] | None = None) -> ArmWorld:
-        """Return the world in which some contacts are not tested; of what is held, or taken, they may not be deep.
+        """Return the world in which some contacts are not tested; those of held or taken objects must not be deep.
 
-        For these the arm holds the object once more, smaller by the depth that is allowed, or there is such an obstacle
-        for its fingers; `depths` are those of what is not yet held.  Capsules are wider than fingers: a robot without
-        true shapes may have them in what it takes.
+        To bound their depth, the arm holds the object a second time, smaller by the allowed depth, or there is such an
+        obstacle for its fingers.  `depths` are those of objects not yet held.  Capsules are wider than fingers, so a
+        robot without true shapes may have them in the object.
         """
         look_at_clock()
         if not contacts:
@@ -73,15 +73,15 @@ class Stage:
         return replace(self.world, robot=robot, scene=scene)
 
     def gripping(self, step: Attach) -> ArmWorld:
-        """Return the world in which the gripper may touch what it takes, but not deeply."""
+        """Return the world in which the gripper may touch the object that it takes, but not deeply."""
         links = (step.link or default_tip(self.world.robot), *touches(step, self.world.robot))
         return self.with_contacts(frozenset((link, step.object) for link in links), {step.object: step.depth})
 
     def attach(self, step: Attach, where: str, *, first: bool = False) -> Stage:
-        """Return the stage after an obstacle is taken; `where` names the step.
+        """Return the stage after an obstacle is attached; `where` names the step.
 
-        Raises UnknownName if there is none, InvalidValue if it is out of reach, or is too deep in the gripper where the
-        task begins, which is a motion's matter else.
+        Raises UnknownName if there is no such obstacle.  Raises InvalidValue if it is out of reach or, at the `first`
+        step, too deep in the gripper; a motion before it would prevent the latter.
         """
         scene, robot = self.world.scene, self.world.robot
         touching = touches(step, robot)
@@ -107,12 +107,12 @@ class Stage:
         clearances = {**self.clearances, step.object: found[0].clearance}
         stage = replace(self, depths=depths, clearances=clearances)
         stage = replace(stage, world=_world(stage, attached))
-        # Until it is lifted it may touch what it stood on.
+        # The object may touch its support until it is lifted.
         stood = frozenset((step.object, each) for each in stage.touched(step.object))
         return replace(stage, near_start=self.near_start | stood)
 
     def detach(self, step: Detach, where: str) -> Stage:
-        """Return the stage after an object is let go.  Raises InvalidValue if the task has not attached it."""
+        """Return the stage after an object is detached.  Raises InvalidValue if the task has not attached it."""
         scene, robot = self.world.scene, self.world.robot
         held = {each.name: each for each in scene.attached if each.name not in self.empty.holds}
         if step.object not in held:
@@ -127,12 +127,12 @@ class Stage:
         setup = replace(scene.setup, attached=left)
         scene = replace(scene, obstacles=(*scene.obstacles, placed), setup=setup, allowed=allowed)
         let_go = frozenset((link, step.object) for link in (held[step.object].link, *held[step.object].touches))
-        # Contacts of the object itself end: it is no body of the robot any more.
+        # Contacts of the object itself end, because it is no longer a body of the robot.
         others = frozenset(each for each in self.near_start if each[0] != step.object)
         return replace(self, world=_world(self, scene), near_start=others | let_go)
 
     def touched(self, held: str) -> list[str]:
-        """Return the obstacles without which what is held would be free here: those that it touches."""
+        """Return the obstacles that a held object touches."""
         scene, world = self.world.scene, self.world
         found: list[str] = []
         for each in scene.obstacles:
@@ -149,7 +149,7 @@ def _smaller(name: str, depth: float) -> str:
 
 
 def touches(step: Attach, robot: Robot) -> tuple[str, ...]:
-    """Return the links that may touch what is attached: by default all that no planned joint moves against the link.
+    """Return the links that may touch an attached object; default: all that no planned joint moves against its link.
 
     Raises UnknownName if there is no such link.
     """
@@ -171,7 +171,7 @@ def pose_of(robot: Robot, q: Floats, link: str) -> Pose:
 
 
 def _holding_core(robot: Robot, held: HeldObject, depth: float, *, as_capsule: bool) -> Robot:
-    """Return the robot holding what it holds once more, smaller by a depth, if it does not yet."""
+    """Return the robot that holds an object a second time, smaller by a depth, if it does not yet."""
     name, core = _smaller(held.name, depth), core_of(held.body, depth, as_capsule=as_capsule)
     if core is None or name in robot.holds:
         return robot
@@ -179,15 +179,15 @@ def _holding_core(robot: Robot, held: HeldObject, depth: float, *, as_capsule: b
 
 
 def _world(stage: Stage, scene: Scene) -> ArmWorld:
-    """Return the stage's world with another scene, and the robot holding what is attached there.
+    """Return the stage's world with another scene, and the robot that holds the attached objects.
 
-    The smaller body that may not touch either is there at once: one robot is made, which is most of the work.
+    The smaller body that must not touch either is added at the same time, since making a robot is most of the work.
     """
     robot = stage.empty
     for held in scene.attached:
         if held.name not in robot.holds:
             look_at_clock(_TO_HOLD)
-            # The core comes first: if both touch, messages name the object.
+            # The core comes first, so that messages name the object if both touch.
             if held.name in stage.depths:
                 as_capsule = not robot.holding(held).shapes
                 robot = _holding_core(robot, held, stage.depths[held.name], as_capsule=as_capsule)

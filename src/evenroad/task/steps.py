@@ -17,7 +17,7 @@ from evenroad.poses.constraint import Constraint, part_of
 from evenroad.poses.pose_goal import PoseGoal
 
 DEPTH, REACH = 0.005, 0.1
-"""How deep an object may be in what it stands on, and the distance at which a gripper takes it, by default [m]."""
+"""Defaults of the depth of an object in its support, and of the distance at which a gripper attaches it [m]."""
 
 
 @explains_calls
@@ -28,18 +28,18 @@ class MoveTo:
     Parameters
     ----------
     goal : configuration, Pose, PoseGoal, str, or a sequence of such
-        As :func:`evenroad.plan` takes it.  Of several, one is taken with which the rest of the task can be done.
+        A goal, or several, of :func:`evenroad.plan`.  Among several, the task chooses one that allows its later steps.
     approach, retreat : float
         Lengths of straight lines of the tip to the goal and from the start, >= 0 [m].
     away : sequence of 3 floats, "x", "-x", ..., or "up"
         Direction of the lines, see :class:`evenroad.CartesianLine`.
     constraints : Constraint, optional
-        Others, such as :class:`evenroad.constraints.KeepUpright`.
+        Other constraints, such as :class:`evenroad.constraints.KeepUpright`.
 
     Raises
     ------
     InvalidValue
-        If a length is not such a number, or the constraints have a line of their own.
+        If a length is not such a number, or the constraints include a line.
 
     Examples
     --------
@@ -63,19 +63,19 @@ class MoveTo:
             raise InvalidValue("a base that cannot go sideways goes without approach and retreat")
 
     def line(self, tip: str) -> CartesianLine:
-        """Return the straight lines of a tip, where there are some."""
+        """Return the straight lines of a tip, if there are any."""
         return CartesianLine(self.approach, self.retreat, self.away, tip)
 
 
 @explains_calls
 @dataclass(frozen=True)
 class MoveLinear:
-    """A motion along a straight line of the tip, which turns steadily.
+    """A motion along a straight line of the tip, with a constant rate of rotation.
 
     Parameters
     ----------
     pose : Pose or PoseGoal
-        Where the tip ends: a whole pose, without a free axis or tolerances.
+        Last pose of the tip, complete: without a free axis or tolerances.
     speed : float, optional
         Largest speed of the tip, > 0 [m/s].  Default: what the joints allow.
 
@@ -102,15 +102,15 @@ class MoveLinear:
 @explains_calls
 @dataclass(frozen=True)
 class MoveAlong:
-    """A motion of the tip along a polyline, or a spline, from where it is through poses.
+    """A motion of the tip along a polyline or a spline, from its current pose through others.
 
     Parameters
     ----------
     poses : sequence of Pose or PoseGoal
-        One or more whole poses of one tip.
+        One or more complete poses of one tip.
     blend : float
-        How far before each inner pose the tip may leave its line to go round the corner, >= 0 [m]: it is never farther
-        from the pose than that.  With 0 it stops at corners.
+        Distance from each inner pose at which the tip may leave its line to round the corner, >= 0 [m].  It is never
+        farther from the pose than that.  With 0 it stops at corners.
     spline : bool
         Whether the tip passes through the poses on a smooth curve, without a stop.
     speed : float, optional
@@ -119,7 +119,7 @@ class MoveAlong:
     Raises
     ------
     InvalidValue
-        If there is no pose, one is not whole, a number is invalid, or a spline has a blend.
+        If there is no pose, one is incomplete, a number is invalid, or a spline has a blend.
 
     Examples
     --------
@@ -146,12 +146,12 @@ class MoveAlong:
 @explains_calls
 @dataclass(frozen=True)
 class MoveCircular:
-    """A motion of the tip along an arc of a circle, from where it is through a pose to another.
+    """A motion of the tip along a circular arc, from its current pose through another to a third.
 
     Parameters
     ----------
     via, to : Pose or PoseGoal
-        Whole poses of one tip; with where it is they must not be on a line.
+        Complete poses of one tip; the three positions must not be on a line.
     speed : float, optional
         Largest speed of the tip, > 0 [m/s].  Default: what the joints allow.
 
@@ -181,8 +181,8 @@ class MoveCircular:
 class Attach:
     """The gripper takes an obstacle, which then moves with a link.
 
-    Obstacles that it touches there, such as what it stands on, it may touch on the straight line with which the next
-    motion leaves, up to `depth`.
+    If the obstacle touches others, such as its support, it may touch them up to `depth` on the straight line at the
+    beginning of the next motion.
 
     Parameters
     ----------
@@ -191,12 +191,12 @@ class Attach:
     link : str
         The link that carries it; default: the last one.
     touches : sequence of str, optional
-        Links that may touch it, on the lines to it and while it is held.  Default: all that no joint which is planned
-        for moves against `link`, such as fingers.
+        Links that may touch it on the lines to it, and while it is held.  Default: all links that no planned joint
+        moves relative to `link`, such as fingers.
     depth : float
-        How deep it may be in what it may touch: less by this on every side, it must be free, >= 0 [m].
+        Largest depth in bodies that it may touch, >= 0 [m].  The object, smaller by this on every side, must be free.
     reach : float
-        Largest distance at which it is taken, from the links that may touch it, >= 0 [m].
+        Largest distance from the links that may touch it, >= 0 [m].
 
     Raises
     ------
@@ -227,14 +227,14 @@ class Attach:
 @explains_calls
 @dataclass(frozen=True)
 class Detach:
-    """The gripper lets go of what it holds, which is an obstacle again, where it is then.
+    """The gripper releases an object, which becomes an obstacle at its current pose.
 
     Parameters
     ----------
     object : str
-        Name of what is held.
+        Name of the held object.
     onto : sequence of str
-        Obstacles that it may touch on the line to its place, such as the table, up to the `depth` of its Attach.
+        Obstacles that it may touch on the line to its pose, such as the table, up to the `depth` of its Attach.
 
     Raises
     ------
@@ -259,7 +259,7 @@ class Detach:
 @explains_calls
 @dataclass(frozen=True)
 class Wait:
-    """The arm stands still.
+    """The arm does not move for a time.
 
     Parameters
     ----------
@@ -290,7 +290,7 @@ Step = Move | Attach | Detach | Wait
 
 
 def _require_poses(step: AlongCurve, poses: Sequence[object]) -> None:
-    """Refuse what is no whole pose, poses of several tips, and a speed that is none."""
+    """Refuse incomplete poses, poses of several tips, and an invalid speed."""
     kind = type(step).__name__
     for pose in poses:
         if not isinstance(pose, Pose | PoseGoal):
@@ -311,7 +311,7 @@ def _require_names(step: Attach | Detach, *names: str) -> None:
 
 
 def _names(step: Attach | Detach, name: str) -> tuple[str, ...]:
-    """Return the names that a field of a step has."""
+    """Return the names in a field of a step."""
     given = getattr(step, name)
     listed = (given,) if isinstance(given, str) else given
     if not isinstance(listed, Collection) or not all(isinstance(each, str) for each in listed):

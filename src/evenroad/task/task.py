@@ -1,4 +1,4 @@
-"""Task: the steps of an arm, one after the other."""
+"""Task: a sequence of steps of an arm."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from evenroad.task.result import TaskResult
 from evenroad.task.steps import Move, Step
 
 MOST_MOTIONS = 500
-"""Largest number of motions of a task: the search goes as deep."""
+"""Largest number of motions of a task, which is the depth of the search."""
 
 
 @explains_calls
 @dataclass(frozen=True)
 class Task:
-    """Steps, one after the other.
+    """A sequence of steps.
 
     Parameters
     ----------
     steps : sequence of MoveTo, MoveLinear, MoveAlong, MoveCircular, Attach, Detach and Wait
-        One motion at least, and 500 at most.
+        The steps, with 1 to 500 motions.
 
     Raises
     ------
@@ -58,18 +58,18 @@ class Task:
     def plan(
         self, world: ArmWorld, start: Any, *, tip: str = "", frame: str = "", degrees: bool = False, **options: Any
     ) -> TaskResult:
-        """Plan all motions; goals are chosen with which all steps can be done, the cheapest of those looked at.
+        """Plan all motions; the chosen goals allow all steps, and are the cheapest of those tried.
 
         Parameters
         ----------
         world : ArmWorld
-            Where the task begins.  What is attached becomes a body of the robot.
+            The world at the beginning.  An attached obstacle becomes a body of the robot.
         start : configuration or str
-            As :func:`evenroad.plan` takes it.
+            As for :func:`evenroad.plan`.
         tip, frame, degrees
-            How poses and texts are read, as there.
+            Options for reading poses and texts, as there.
         **options
-            ``seconds`` of the whole task, by default 5; ``limits`` of each motion, ``smooth``, ``rng``, as there.
+            ``seconds`` for the whole task, by default 5; ``limits`` of each motion, ``smooth``, ``rng``, as there.
 
         Returns
         -------
@@ -79,7 +79,7 @@ class Task:
         Raises
         ------
         InvalidValue, UnknownName
-            If an argument is none of these, a step takes what is no obstacle, or lets go of what is not held.
+            If an argument is none of these, a step attaches an unknown obstacle, or detaches one that is not held.
 
         Examples
         --------

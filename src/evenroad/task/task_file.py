@@ -1,4 +1,4 @@
-"""Tasks from YAML files: the robot, what is around it, a start, and the steps."""
+"""Tasks from YAML files: the robot, its scene, a start, and the steps."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _OF_A_MOTION = ("goals", "poses", "approach", "retreat", "away", "upright", "con
 class TaskFile:
     """A task from a file, with the `robot` and `scene` that it names, or None; `scene` may be a mapping.
 
-    A path is of a file beside that of the task.
+    Paths are relative to the folder of the task's file.
     """
 
     task: Task
@@ -60,8 +60,8 @@ def load_task(path: str | os.PathLike[str]) -> TaskFile:
           - move_circular: {via: "0.6 -0.1 0.3 0 0 0", to: "0.5 0 0.3 0 0 0", speed: 0.1}
           - move_to: home                 # a goal, or {goals: [home, "0 -1.57 0 -1.57 0 0"], retreat: 0.1}
 
-    Poses are texts as ``--goal-pose`` takes them [m, rad]; with ``upright: 0.1`` the tip tilts by that at most, and
-    ``constraints: [line y, orientation 0.001]`` are texts as ``--constraint`` takes them.
+    Poses are texts like those of ``--goal-pose`` [m, rad].  With ``upright: 0.1`` the tip tilts by at most that.
+    ``constraints: [line y, orientation 0.001]`` are texts like those of ``--constraint``.
 
     Parameters
     ----------
@@ -70,9 +70,9 @@ def load_task(path: str | os.PathLike[str]) -> TaskFile:
     Raises
     ------
     BrokenFile
-        If the file is missing or no YAML.
+        If the file is missing or is not YAML.
     UnknownName, InvalidValue
-        For a key or value that a task does not have; the text says in which step.
+        For an unknown key or an invalid value; the text names the step.
     """
     file = Path(path)
     said = read_mapping(file, "task")
@@ -93,7 +93,7 @@ def load_task(path: str | os.PathLike[str]) -> TaskFile:
 
 
 def _beside(file: Path, source: _T) -> _T | str:
-    """Return a path beside the task's file, where there is one of this name."""
+    """Return the path of a file of this name beside the task's file, if there is one."""
     found = file.parent / source if isinstance(source, str) else None
     return source if found is None or not found.is_file() else str(found)
 

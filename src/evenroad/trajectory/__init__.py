@@ -1,4 +1,4 @@
-"""Trajectories: a path with a time for every position on it, within the limits of the joints."""
+"""Trajectories: paths with a time for every position, within the limits of the joints."""
 
 from evenroad._lazy import names_on_use
 

@@ -45,32 +45,32 @@ def arm_trajectory(
     rounded_by_controller: bool = False,
     constraints: Constraint | None = None,
 ) -> Trajectory:
-    """Return the trajectory of an arm along a path, checked in its world as it is driven.
+    """Return the trajectory of an arm along a path; the motion as driven is checked in its world.
 
     Parameters
     ----------
     world : ArmWorld
         The arm among its obstacles.
     path : array_like, shape (p, dim), or InMotion
-        As :attr:`PlanResult.path`.  Continuous joints take the shorter direction and may leave the range of one turn.
+        A path, as :attr:`PlanResult.path`.  Continuous joints turn in the shorter direction, perhaps beyond one turn.
     limits : Limits, optional
         Default: those of the robot, see :func:`limits_of`.
     speed : float
         Share of full speed, 0 < speed <= 1.
     deviation, step
-        As :func:`make_trajectory`.
+        As for :func:`make_trajectory`.
     rounded_by_controller : bool
         Whether to compute the radii by which the controller may round corners, for ``.movej.script``.
     constraints : Constraint, optional
-        Those of the plan: the trajectory keeps them, too, within the same tolerances.
+        Constraints of the plan. The trajectory keeps them, too, within the same tolerances.
 
     Raises
     ------
     InvalidValue, NotAvailable
-        As :func:`make_trajectory`.
+        As for :func:`make_trajectory`.
     """
     if part_of(constraints, DifferentialDrive) is not None and deviation != 0.0:
-        # A rounded corner would take the base sideways.
+        # A rounded corner would move the base sideways.
         raise InvalidValue("a base that cannot go sideways stops where it turns: deviation must be 0")
     robot = world.robot
     within = (limits_of(robot) if limits is None else limits).at_speed(speed)
@@ -105,7 +105,7 @@ def arm_trajectory(
 def controller_joints(robot: Robot) -> tuple[str, ...]:
     """Return the joints that one controller probably drives, in the order of the chain.
 
-    They are the planned joints, those before them, and those behind them up to a branch.
+    They are the planned joints, those before them, and those after them up to a branch.
     """
     child = {joint.name: joint.child for joint in robot.joints}
     parent_joint = {joint.child: joint for joint in robot.joints}
@@ -146,7 +146,7 @@ def trajectory_of(
         options = {"deviation": 0.0, "constraints": DifferentialDrive()} | options
         world = world.world
     if isinstance(world, KeptWorld):
-        # A plan without lines is one in such a world: its arm has names and limits, and keeps constraints as it moves.
+        # A plan without lines is in a constrained world. Its arm has names and limits, and keeps the constraints.
         options.setdefault("constraints", reduce(and_, world.keeps))
         world = world.world
     if isinstance(world, ArmWorld):

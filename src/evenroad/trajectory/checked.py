@@ -1,4 +1,4 @@
-"""Checks of a trajectory, by its states alone and in a world: a file's word is no proof."""
+"""Checks of a trajectory, by its states alone and in a world, because the claim of a file is no proof."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ _OVER = 1.001
 _ROUNDING = 1e-12
 """Largest error of a position by rounding, relative to the largest one."""
 _SAME = 1e-9
-"""Largest difference of a held joint from where the robot has it [rad or m]."""
+"""Largest difference between a held joint's values in trajectory and robot [rad or m]."""
 _SIDEWAYS = 1e-6
-"""Largest way of a base across its heading between two states [m]."""
+"""Largest movement of a base across its heading between two states [m]."""
 
 
 def require_within_limits(trajectory: Trajectory) -> None:
-    """Raise InvalidValue where states violate the trajectory's limits, or do not follow each other.
+    """Raise InvalidValue if states violate the trajectory's limits, or are inconsistent in sequence.
 
-    A controller takes the positions alone, so speeds and accelerations between them count, too; and the velocities must
-    be theirs.
+    A controller takes only the positions, so speeds and accelerations between them count, too, and the velocities must
+    agree with them.
     """
     dt, limits = trajectory.step, trajectory.limits
     q, v, a = trajectory.positions, trajectory.velocities, trajectory.accelerations
     fastest, push, slower = (np.array(row) for row in (limits.velocity, limits.acceleration, limits.stopping))
-    # Velocities between states may change as fast as the joint may slow down.
+    # The limit for changes of velocity between states is that of slowing down.
     slows = a * v < 0.0
     push, faster = np.maximum(push, slower), push
     off = 4.0 * _ROUNDING * (1.0 + float(np.abs(q).max()))
@@ -68,17 +68,16 @@ def require_within_limits(trajectory: Trajectory) -> None:
 def proved_in(trajectory: Trajectory, world: World, constraints: Constraint | None = None) -> Trajectory:
     """Return a trajectory, such as one from a file, with the proof that it is free in a world.
 
-    Its states are checked as they are: that they keep the limits of the trajectory, follow each other, are within the
-    limits of the joints, and that all motions from state to state are free, by the strict check of the world if it has
-    one.
+    The checks are these: the states keep the limits of the trajectory, are consistent in sequence, and are within the
+    limits of the joints.  All motions from state to state are free, by the strict check of the world if it has one.
 
     Parameters
     ----------
     trajectory : Trajectory
     world : World
-        An arm's world must plan for the joints of the trajectory, and have its held joints where that has them.
+        An arm's world must plan for the joints of the trajectory, and have its held joints at the same values.
     constraints : Constraint, optional
-        Those of the plan, which the trajectory keeps, too.
+        Constraints of the plan, which the trajectory must keep, too.
 
     Returns
     -------
@@ -90,7 +89,7 @@ def proved_in(trajectory: Trajectory, world: World, constraints: Constraint | No
     InvalidValue
         If a limit is violated, or the joints are others.
     NotAvailable
-        If it is not proved free, or does not keep the constraints.
+        If it is not proved free, or violates the constraints.
 
     Examples
     --------
@@ -121,7 +120,7 @@ def proved_in(trajectory: Trajectory, world: World, constraints: Constraint | No
 
 
 def _require_joints(trajectory: Trajectory, robot: Robot) -> None:
-    """Raise InvalidValue where a trajectory is of other joints than those that a robot plans for."""
+    """Raise InvalidValue if a trajectory has other joints than those that a robot plans for."""
     if trajectory.names != robot.group:
         there, here = ", ".join(trajectory.names), ", ".join(robot.group)
         raise InvalidValue(f"the trajectory is of the joints {there}, the robot {robot.name!r} plans for {here}")
@@ -132,7 +131,7 @@ def _require_joints(trajectory: Trajectory, robot: Robot) -> None:
 
 
 def _straight_ahead(positions: Floats, base: tuple[int, int, int]) -> Bools:
-    """Return which motions from state to state take a base along its heading: (n - 1,)."""
+    """Return which motions from state to state move a base along its heading: (n - 1,)."""
     moved = np.diff(positions[:, base[:2]], axis=0)
     heading = 0.5 * (positions[1:, base[2]] + positions[:-1, base[2]])
     across: Floats = np.cos(heading) * moved[:, 1] - np.sin(heading) * moved[:, 0]
@@ -140,6 +139,6 @@ def _straight_ahead(positions: Floats, base: tuple[int, int, int]) -> Bools:
 
 
 def _why(world: World, positions: Floats) -> str:
-    """Return what the first state that is not free touches; nothing where all are free."""
+    """Return in words the contact of the first state that is not free; an empty text if all are free."""
     bad = positions[~world.valid(positions)]
     return f": {world.explain(bad[0])}" if len(bad) and isinstance(world, Explains) else ""

@@ -1,4 +1,4 @@
-"""Tries of a trajectory: it is checked as it is driven, and corners that are not free are cut less."""
+"""Repeated tries of a trajectory: each is checked as driven, and corners that are not free are cut less."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.world import World
 
 MOST_STATES = 1_000_000
-"""Largest number of states, more than two hours at 125 Hz."""
+"""Largest number of states: more than two hours at 125 Hz."""
 
 _HALVINGS = 6
-"""Number of times that a blend in collision is halved; then the robot stops at the corner."""
+"""Number of times that a blend in collision is halved before the robot stops at the corner."""
 _STOPPINGS = 6
-"""Number of times that corners become stops: each moves the times at which states are checked."""
+"""Number of times that corners become stops. Each stop shifts the times at which states are checked."""
 TRIES = _HALVINGS + _STOPPINGS
 
 
 class TimedStates(NamedTuple):
-    """States of a robot at even times, with the proof of its motions and their measures, as of :class:`Trajectory`."""
+    """States of a robot at even times, with the proof of its motions and the measures of a :class:`Trajectory`."""
 
     times: Floats
     positions: Floats
@@ -57,10 +57,10 @@ def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
 
 
 def less_at(cuts: Floats, corners: Floats, before: Floats, after: Floats, tried: int) -> Floats:
-    """Return `cuts`, (p,), smaller where motions from state to state are not free; after some tries these are stops.
+    """Return `cuts`, (p,), made smaller at motions that are not free; after some tries the robot stops there.
 
-    They are smaller at the corner nearest to the length at which such a motion begins or, where that is a stop already,
-    at which it ends.
+    The smaller cut is at the corner nearest to the beginning of such a motion or, if that is a stop already, to its
+    end.
     """
     if len(corners) == 0:
         return cuts
@@ -74,10 +74,11 @@ def less_at(cuts: Floats, corners: Floats, before: Floats, after: Floats, tried:
 def with_rests(
     make: Callable[[Floats, Floats], TimedStates], world: World | None, waypoints: Floats, cuts: Floats, refusal: str
 ) -> TimedStates:
-    """Return what `make` does of waypoints and cuts, made for each part of a path between two stops on its own.
+    """Return the states that `make` gives for waypoints and cuts, called separately for each part between two stops.
 
-    So a state lies at each stop; otherwise the motion between the states around it would cut the corner.  Stops are the
-    corners whose `cuts`, (p,), are 0.  Raises NotAvailable, with the text of the refusal, if this is not free either.
+    A state then lies at each stop; otherwise the motion between the states around it would cut the corner.  Stops are
+    the corners whose `cuts`, (p,), are 0.  Raises NotAvailable, with the text of the refusal, if this is not free
+    either.
     """
     stops = [0, *(1 + np.flatnonzero(cuts[1:-1] == 0.0)).tolist(), len(cuts) - 1]
     if len(stops) == 2:

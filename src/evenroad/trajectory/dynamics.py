@@ -21,7 +21,7 @@ from evenroad.loading.masses import Mass, read_masses
 from evenroad.robots.robot import Robot
 
 EARTH = (0.0, 0.0, -9.81)
-"""Acceleration of what falls, in the frame of the root [m/s^2]."""
+"""Acceleration of gravity, in the frame of the root [m/s^2]."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class Dynamics:
     ----------
     robot : Robot
     masses : tuple of Mass
-        Links may have several, or none.
+        Masses; a link may have several, or none.
     efforts : tuple of float
-        Largest torque of each planned joint, > 0; infinite where there is no limit [N m; N of those that slide].
+        Largest torque of each planned joint, > 0; infinite without a limit [N m; N for prismatic joints].
     gravity : tuple of 3 floats
         Acceleration of what falls, in the frame of the root [m/s^2].
     """
@@ -54,7 +54,7 @@ class Dynamics:
             require_known(f"link of {self.robot.name!r}:", mass.link, self.robot.links)
 
     def carrying(self, link: str, mass: float, centre: Iterable[float] = (0.0, 0.0, 0.0)) -> Dynamics:
-        """Return the dynamics with one more mass, > 0 [kg], on a link, small and at a place in its frame [m].
+        """Return the dynamics with one more point mass, > 0 [kg], on a link, at a position in its frame [m].
 
         Raises InvalidValue or UnknownName if an argument is no such number or link.
         """
@@ -63,9 +63,9 @@ class Dynamics:
         return replace(self, masses=(*self.masses, more))
 
     def torques(self, q: npt.ArrayLike, velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> Floats:
-        """Return the torques that joints need at configurations for velocities and accelerations, (n, dim) each.
+        """Return the torques of joints at configurations for velocities and accelerations, (n, dim) each.
 
-        Forces are summed up from the tips to the root (Newton and Euler; Luh, Walker and Paul 1980).
+        Forces are summed from the tips to the root (Newton and Euler; Luh, Walker and Paul 1980).
 
         Raises
         ------
@@ -88,8 +88,10 @@ class Dynamics:
 
 
 def native_links(robot: Robot, masses: Iterable[Mass] = ()) -> MovingLinks:
-    """Return the links of a robot as the native kernel takes them: of each frame that moves its coordinate, its parent,
-    whether it slides, and its pose, multiplier, offset, mass, centre and inertia, (n, 27).
+    """Return the links of a robot in the form of the native kernel.
+
+    Each moving frame has its coordinate, its parent, whether it slides, and a row of its pose, multiplier, offset,
+    mass, centre and inertia, (n, 27).
     """
     tree = prepared(robot).tables.tree
     rows = np.zeros((len(tree.frames), 27))
@@ -122,20 +124,20 @@ def native_links(robot: Robot, masses: Iterable[Mass] = ()) -> MovingLinks:
 
 
 def _about(point: Floats) -> Floats:
-    """Return the inertia of 1 kg at a point, (3, 3)."""
+    """Return the inertia about the origin of 1 kg at a point, (3, 3)."""
     inertia: Floats = point @ point * np.eye(3) - np.outer(point, point)
     return inertia
 
 
 def load_dynamics(robot: Robot, file: str | os.PathLike[str], *, gravity: Iterable[float] = EARTH) -> Dynamics:
-    """Return what the links of a robot weigh, and which torques its joints have, as a URDF or xacro says.
+    """Return the masses of a robot's links and the torques of its joints, from a URDF or xacro.
 
     Parameters
     ----------
     robot : Robot
-        Its planned joints have the efforts of the file; a joint without one, or with 0, has no limit.
+        The robot. Its planned joints have the efforts of the file; a joint without one, or with 0, has no limit.
     file : str or path-like
-        The file with ``<inertial>`` elements, mostly that of the robot itself.
+        The file with ``<inertial>`` elements, usually that of the robot itself.
     gravity : sequence of 3 floats
         Acceleration of what falls, in the frame of the root [m/s^2].
 
@@ -146,9 +148,9 @@ def load_dynamics(robot: Robot, file: str | os.PathLike[str], *, gravity: Iterab
     Raises
     ------
     BrokenFile
-        If the file cannot be read, or has a mass or an inertia that is no number or below 0.
+        If the file cannot be read, or a mass or inertia is not a number >= 0.
     InvalidValue
-        If no link of the robot has a mass there, or gravity is no such row.
+        If no link of the robot has a mass there, or gravity is not three numbers.
     """
     masses, efforts = read_masses(Path(file))
     masses = tuple(mass for mass in masses if mass.link in robot.links)

@@ -1,6 +1,6 @@
-"""Formats of trajectories on disk: JSON that is read back, CSV, and ROS 2's JointTrajectory as YAML and as a bag.
+"""Formats of trajectories on disk: JSON, which can be read back, CSV, and ROS 2's JointTrajectory as YAML and as a bag.
 
-`WRITERS` lists them; one of another vendor is a file beside ``urscript.py``, and a line there.
+`WRITERS` lists them.  The format of another vendor is a file beside ``urscript.py``, and a line in the list.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from evenroad.trajectory.urscript import movej_script, servoj_script
 FORMAT = "evenroad trajectory 1"
 TOPIC = "/joint_trajectory"
 Message: TypeAlias = Any
-"""A message of ROS 2, whose types are made at run time."""
+"""A message of ROS 2; its types are made at run time."""
 _TABLES = ("positions", "velocities", "accelerations")
 _MESSAGE = "trajectory_msgs/msg/JointTrajectory"
 
@@ -65,7 +65,7 @@ def save_trajectory(path: str | os.PathLike[str], trajectory: Trajectory, order:
 def save_trajectories(
     paths: Iterable[str | os.PathLike[str]], trajectory: Trajectory, order: Sequence[str] | None = None
 ) -> None:
-    """Write a trajectory to several files as :func:`save_trajectory` does; to none if one format cannot have it."""
+    """Write a trajectory to several files by :func:`save_trajectory`; to none if one format cannot express it."""
     contents = [(path, WRITERS[format_of(path)](trajectory, order)) for path in paths]
     for path, data in contents:
         with atomic_write(path) as file:
@@ -84,14 +84,14 @@ def format_of(path: str | os.PathLike[str]) -> str:
 def load_trajectory(path: str | os.PathLike[str]) -> Trajectory:
     """Read a trajectory from the JSON of :func:`save_trajectory`.
 
-    Nobody has checked it in a world: its `proof` is ``unchecked`` until :func:`proved_in`.  Raises BrokenFile if it is
-    damaged, its numbers do not fit together, or they violate its own limits.
+    It has not been checked in a world: its `proof` is ``unchecked`` until :func:`proved_in`.  Raises BrokenFile if it
+    is damaged, its numbers are inconsistent, or they violate its own limits.
     """
     return trajectory_of(read_json_file(path, "trajectory"), path)
 
 
 def trajectory_of(record: Json, path: str | os.PathLike[str]) -> Trajectory:
-    """Return the trajectory of a JSON record of a file; BrokenFile if its numbers do not fit together."""
+    """Return the trajectory of a JSON record of a file; BrokenFile if its numbers are inconsistent."""
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         wrote = "as `evenroad plan --trajectory` writes it"
         raise BrokenFile(f"{path} is not a trajectory: its 'format' must be {FORMAT!r}, {wrote}")
@@ -152,7 +152,7 @@ def _from_record(record: Json) -> Trajectory:
 
 
 def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None) -> dict[str, object]:
-    """Return a trajectory as plain JSON values, as :func:`load_trajectory` reads them."""
+    """Return a trajectory as plain JSON values for :func:`load_trajectory`."""
     kinds = "velocity", "acceleration", "jerk", "deceleration"
     limits = {
         kind: value for kind in kinds if (value := getattr(trajectory.limits, kind)) is not None or kind == "jerk"
@@ -215,9 +215,9 @@ def joint_trajectory(
     Parameters
     ----------
     trajectory, order
-        As :func:`save_trajectory`.
+        As for :func:`save_trajectory`.
     make : callable
-        Makes a message, as ``make("std_msgs/msg/Header", stamp=..., frame_id=...)``.
+        Maker of messages, called as ``make("std_msgs/msg/Header", stamp=..., frame_id=...)``.
     """
     names, tables = trajectory.columns(order)
 

@@ -1,4 +1,4 @@
-"""Paths that begin or end in motion: a robot that moves goes straight on before it turns."""
+"""Paths that begin or end in motion: a moving robot continues straight before it turns."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from evenroad.errors import InvalidValue
 from evenroad.trajectory.limits import Limits
 
 FARTHER = (1.1, 2.5, 6.0, 15.0)
-"""Lengths of the straight way on that are tried, as multiples of that on which limits of the joints let it stop; limits
-of torques and of a tip may need more.
+"""Lengths of the straight piece to try, as multiples of the stopping distance by limits of the joints; limits of
+torques and of a tip may need more.
 """
 _ALONG = 1e-9
 """Largest sine of an angle between a velocity and a path that begins along it."""
@@ -24,10 +24,10 @@ _ALONG = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class InMotion:
-    """A path, and how fast the joints move at its start and its goal.
+    """A path, and velocities of the joints at its start and goal.
 
-    A trajectory of it goes straight on at the start, as far as the robot needs to stop, and comes straight to the goal,
-    where the path does not begin and end along the velocities.
+    If the path does not begin along the velocity, its trajectory first continues straight for the stopping distance.
+    Likewise, it approaches the goal straight if the path does not end along the velocity.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class InMotion:
     goal: npt.ArrayLike | None = None
 
     def led(self, waypoints: Floats, limits: Limits, farther: float = FARTHER[0]) -> tuple[Floats, tuple[float, float]]:
-        """Return waypoints, (p, dim), with those that lead in and out, and the speeds along the path at both ends.
+        """Return waypoints, (p, dim), with straight pieces at both ends, and the speeds along the path there.
 
         Raises InvalidValue for velocities that are no such rows, or over the limits.
         """
@@ -58,7 +58,7 @@ class InMotion:
             first = path[1] - path[0]
             off = first / np.linalg.norm(first) - sign * direction
             if np.linalg.norm(off) > _ALONG:
-                # At the start the robot has to be able to stop, at the goal to get as fast.
+                # At the start the robot must be able to stop, and at the goal to reach its velocity.
                 pushes = limits.stopping if sign > 0.0 else limits.acceleration
                 push = np.min(np.array(pushes) / np.maximum(np.abs(direction), 1e-12))
                 turning = path[0] + sign * direction * (farther * speed**2 / (2.0 * push))
@@ -70,7 +70,7 @@ class InMotion:
 def _velocity(name: str, given: npt.ArrayLike | None, limits: Limits) -> Floats:
     """Return a velocity within limits, zero for None."""
     dim = len(limits.velocity)
-    # What is no row of numbers is refused there.
+    # `as_row` refuses values that are not a row of numbers.
     row = (
         np.zeros(dim)
         if given is None

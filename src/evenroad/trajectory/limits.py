@@ -25,14 +25,14 @@ SECONDS_TO_FULL_SPEED = 0.5
 """Default time from rest to full speed [s]: URDF has no acceleration."""
 
 _ANY_SPEED = 1e300
-"""Square of a speed that nothing reaches."""
+"""Square of a speed that is never reached."""
 _KINDS = ("velocity", "acceleration", "jerk")
 _OPTIONAL = ("jerk", "deceleration")
 
 
 @dataclass(frozen=True)
 class TipLimits:
-    """Largest speed and acceleration of a robot's link, of the origin of its frame.
+    """Largest speed and acceleration of a link, measured at the origin of its frame.
 
     Attributes
     ----------
@@ -80,18 +80,18 @@ class Limits:
     jerk : tuple of float or None
         > 0, one per joint [rad/s^3]; None: no limit.
     along_path : float or None
-        Largest speed of all coordinates together, as of a vehicle, > 0 [m/s]; None: no limit.
+        Largest speed of all coordinates together, such as that of a vehicle, > 0 [m/s]; None: no limit.
     tip : TipLimits or None
-        Largest speed and acceleration of a link; None: no limit.  A share of full speed leaves them as they are.
+        Largest speed and acceleration of a link; None: no limit.  A share of full speed does not change them.
     torque : Dynamics or None
-        Masses of the links and efforts of the joints; None: no limit of torque.  A share of full speed leaves it as it
-        is.
+        Masses of the links and efforts of the joints; None: no limit of torque.  A share of full speed does not change
+        it.
     position : tuple of pairs of float or None
-        Lower and upper limit of each joint within those of the robot, infinite where there is none [rad; m for
-        prismatic ones].  A path that leaves them gets no times.
+        Lower and upper limit of each joint within those of the robot, infinite without a limit [rad; m for prismatic
+        ones].  A path that leaves them is refused.
     deceleration : tuple of float or None
-        Largest acceleration of each joint against its velocity, where it slows down, > 0 [rad/s^2]; None: as where it
-        speeds up.  If jerk is limited, the smaller of both holds for both.
+        Largest deceleration of each joint, > 0 [rad/s^2]; None: the same as the acceleration.  If jerk is limited, the
+        smaller of the two applies to both.
     """
 
     velocity: tuple[float, ...]
@@ -158,28 +158,28 @@ class Limits:
 
     @property
     def stopping(self) -> tuple[float, ...]:
-        """Largest acceleration of each joint where it slows down."""
+        """Largest deceleration of each joint."""
         return self.acceleration if self.deceleration is None else self.deceleration
 
     @property
     def of_joints(self) -> kernel.JointLimits:
-        """Largest velocities, accelerations and decelerations, as the native kernel takes them."""
+        """Largest velocities, accelerations and decelerations, in the form of the native kernel."""
         return kernel.JointLimits(np.array(self.velocity), np.array(self.acceleration), np.array(self.stopping))
 
     def symmetric(self) -> Limits:
-        """Return the limits with one acceleration a joint: the smaller one, of speeding up and of slowing down."""
+        """Return the limits with one acceleration per joint: the smaller of acceleration and deceleration."""
         if self.deceleration is None:
             return self
         return replace(self, acceleration=tuple(map(min, self.acceleration, self.deceleration)), deceleration=None)
 
     @property
     def is_plain(self) -> bool:
-        """Whether there are limits of joints and of the speed along the path alone."""
+        """Whether the only limits are those of joints and of the speed along the path."""
         return self.torque is None and self.tip is None
 
     @property
     def further(self) -> kernel.FurtherLimits:
-        """Limits beside those of joints, of torques and of a tip, as the native kernel takes them."""
+        """Limits of torques and of a tip, in the form of the native kernel."""
         return kernel.FurtherLimits(
             None if self.torque is None else self.torque.native,
             None if self.tip is None else self.tip.native,
@@ -194,7 +194,7 @@ class Limits:
         return kernel.PathLimits(highest, start, goal, self.further, share)
 
     def too_heavy(self, q: Floats) -> NotAvailable:
-        """Return the error of a path, (n, dim), along which torques cannot hold the robot, or hardly."""
+        """Return the error for a path, (n, dim), along which torques cannot hold the robot, or can hardly."""
         assert self.torque is not None, "only torques are needed at rest"
         still = np.zeros_like(q)
         shares = np.abs(self.torque.torques(q, still, still)) / np.array(self.torque.efforts)
@@ -206,7 +206,7 @@ class Limits:
         )
 
     def further_shares(self, q: Floats, velocity: Floats, acceleration: Floats) -> dict[str, float]:
-        """Return the largest shares of such limits, by kind, at states, (n, dim) each."""
+        """Return the largest used shares of limits of torques and of a tip, by kind, at states, (n, dim) each."""
         return named_shares(kernel.further_shares(self.further, q, velocity, acceleration))
 
 
@@ -222,13 +222,13 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
     Parameters
     ----------
     robot : Robot
-        Its joints have the velocities of the URDF, and the accelerations, decelerations and jerks where it has some.
+        The robot. Its joints have the velocities of the URDF, and its accelerations, decelerations and jerks, if any.
     file : str or path-like, optional
-        MoveIt's ``joint_limits.yaml``; its ``max_velocity``, ``max_acceleration``, ``max_deceleration`` and
-        ``max_jerk`` come first.  Its factors ``default_velocity_scaling_factor`` and
+        MoveIt's ``joint_limits.yaml``. Its ``max_velocity``, ``max_acceleration``, ``max_deceleration`` and
+        ``max_jerk`` override the robot's.  Its factors ``default_velocity_scaling_factor`` and
         ``default_acceleration_scaling_factor`` scale all joints, and its positions are limits of the path.  A joint
-        without an acceleration reaches full speed in 0.5 s; without a jerk, where others have one, it reaches full
-        acceleration as late as the last of these.
+        without an acceleration reaches full speed in 0.5 s.  If only other joints have a jerk, a joint without one
+        reaches full acceleration at the time of the slowest of them.
 
     Raises
     ------
@@ -267,7 +267,7 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
 
 
 def _jerks(jerk: list[float], acceleration: list[float]) -> tuple[float, ...] | None:
-    """Return the jerk of every joint, None where no joint has one: the slowest says when others are at full push."""
+    """Return the jerk of every joint, or None if no joint has one; the slowest joint sets the jerk of those without."""
     if min(jerk) == math.inf:
         return None
     seconds = max(push / most for push, most in zip(acceleration, jerk, strict=True))

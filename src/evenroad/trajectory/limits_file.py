@@ -21,7 +21,7 @@ _JOINT = Kind(
         *(f"max_{kind}" for kind in RATES),
         *(name for names in _POSITION for name in names),
     ),
-    # Torques come from the robot's own file, and a joint turns on where that says so.
+    # Torques and continuous joints come from the robot's own file.
     harmless={"has_effort_limits", "max_effort", "angle_wraparound", "k_position", "k_velocity"},
 )
 _FILE = Kind(
@@ -38,8 +38,8 @@ _FILE = Kind(
 class LimitsFile:
     """Limits of joints in a file, without those that it switches off.
 
-    `rates` are joint -> kind -> value, `positions` joint -> (lower, upper), infinite where one is not given; `scaling`
-    are the factors of all velocities and accelerations, 0 < factor <= 1.
+    `rates` are joint -> kind -> value, and `positions` joint -> (lower, upper), infinite if not given.  `scaling` has
+    the factors of all velocities and accelerations, 0 < factor <= 1.
     """
 
     rates: Mapping[str, Mapping[str, float]]
@@ -79,7 +79,7 @@ def _is_limited(kind: str, row: dict[str, object], where: str) -> bool:
 
 def _rate(kind: str, row: dict[str, object], where: str) -> float:
     value = row[f"max_{kind}"]
-    # Pilz's planner wants decelerations below 0.
+    # Pilz's planner writes decelerations as negative numbers.
     if kind == "deceleration" and isinstance(value, int | float) and not isinstance(value, bool):
         value = abs(value)
     return require_positive(f"max_{kind} of {where}", value)

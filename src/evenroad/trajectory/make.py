@@ -1,4 +1,4 @@
-"""The fastest trajectory along a path, within limits, and checked."""
+"""The fastest trajectory along a path within limits, which is also checked."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import World
 
 DEVIATION = 0.05
-"""Default for the largest deviation at a corner [rad or m]."""
+"""Default of the largest deviation at a corner [rad or m]."""
 
 _FINER = 8
 """Number of states per step at which limits are checked."""
@@ -32,7 +32,7 @@ _SAME = 1e-9
 """Distance in every joint below which two waypoints are equal [rad or m]."""
 
 _SHARES, _LESS = 8, 0.995
-"""Number of times that less of a tip's acceleration and of torques is used, and how much less than would do."""
+"""Number of times that the used share of a tip's acceleration and of torques is reduced, and an extra factor."""
 
 
 class Driven(NamedTuple):
@@ -61,9 +61,9 @@ def make_trajectory(
 ) -> Trajectory:
     """Return the fastest trajectory along a path with rounded corners.
 
-    Corners become arcs of circles (Kunz and Stilman 2012), with the fastest times within velocities and accelerations
+    Corners become circular arcs (Kunz and Stilman 2012), with the fastest times within velocities and accelerations
     (Pham and Pham 2018).  If jerk is limited, the motion is averaged over the largest ``2 acceleration / jerk``,
-    which keeps all limits.  An arc in collision becomes smaller; where a small one still collides, the robot stops.
+    which keeps all limits.  An arc in collision becomes smaller; if a small one still collides, the robot stops.
 
     Parameters
     ----------
@@ -72,11 +72,11 @@ def make_trajectory(
         waypoints are equal, the trajectory is one state without duration.
     limits : Limits
     world : World, optional
-        Checks the trajectory, by its strict check if it has one.  Default: no check.
+        World that checks the trajectory, by its strict check if it has one.  Default: no check.
     names : sequence of str, optional
         Names of the joints; default ``joint_1``, ...
     held, controller : mapping of str to float, sequence of str, optional
-        As of :class:`Trajectory`.
+        As for :class:`Trajectory`.
     deviation : float
         Largest distance from the path, >= 0 [rad or m]; 0 stops at every corner.
     step : float
@@ -85,20 +85,20 @@ def make_trajectory(
     Returns
     -------
     Trajectory
-        Its duration is a whole number of steps; in motion these are a little shorter.
+        Its duration is a whole number of steps; a trajectory in motion has slightly shorter steps.
 
     Raises
     ------
     InvalidValue
         If there is no waypoint, an argument is out of range, or there would be a million states.
     NotAvailable
-        If the trajectory is not free, or violates limits or deviation; mostly the path itself is not free then.
+        If the trajectory is not free, or violates limits or deviation.  Usually the path itself is not free then.
     """
     deviation = require_positive("deviation", deviation, or_zero=True)
     step = require_positive("step", step)
     moving = path if isinstance(path, InMotion) else InMotion(path)
     given = as_batch("path", moving.path, len(limits.velocity))
-    # Waypoints between which it is straight: more of them on a motion change nothing.
+    # Only corners remain: further waypoints on a straight motion change nothing.
     waypoints = given[bends_of(given, _SAME)] if len(given) else given
     if len(given) == 0 or (len(waypoints) < 2 and (moving.start is not None or moving.goal is not None)):
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
@@ -137,7 +137,7 @@ def make_trajectory(
 
 
 def _standing(world: World | None, q: Floats) -> TimedStates:
-    """Return the one state of a robot that stays at a configuration, (dim,)."""
+    """Return the single state of a robot that stays at a configuration, (dim,)."""
     free, proof = drivable(world, np.array([q, q]))
     if not free.all():
         raise NotAvailable("the robot is not proved free where it stands")
@@ -148,9 +148,9 @@ def _standing(world: World | None, q: Floats) -> TimedStates:
 def _averaged_path(
     world: World | None, waypoints: Floats, limits: Limits, cuts: Floats, numbers: tuple[float, float, float]
 ) -> TimedStates:
-    """Return states, proof and measures as `timed_path` does, of a motion that is averaged over a window.
+    """Return states, proof and measures, as `timed_path` does, for a motion averaged over a window.
 
-    The numbers are this window and a step [s], and the largest distance from the path.
+    `numbers` are the window and the step [s], and the largest distance from the path.
     """
     window, step, deviation = numbers
     for tried in range(TRIES):
@@ -158,7 +158,7 @@ def _averaged_path(
         law, fine, driven = _averaged_law(curve, waypoints, limits, window, step)
         free, proof = drivable(world, driven.positions)
         if not free.all() and len(waypoints) == 2:
-            # An average is rounded more than a position: what touches all along the line is on it to the last bits.
+            # Averages are rounded more than positions. A line that touches an obstacle needs exact positions.
             driven = driven._replace(positions=_on_line(driven.positions, *waypoints))
             free, proof = drivable(world, driven.positions)
         bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[driven.off > deviation + 1e-6]])
@@ -176,7 +176,7 @@ def _averaged_path(
 
 
 def _on_line(positions: Floats, begin: Floats, end: Floats) -> Floats:
-    """Return positions, (n, dim), on the line that they lie on up to rounding."""
+    """Return positions, (n, dim), moved exactly onto the line that they lie on up to rounding."""
     length = float(np.linalg.norm(end - begin))
     along = (end - begin) / length
     onto: Floats = begin + np.clip((positions - begin) @ along, 0.0, length)[:, np.newaxis] * along
@@ -186,9 +186,10 @@ def _on_line(positions: Floats, begin: Floats, end: Floats) -> Floats:
 def _averaged_law(
     curve: RoundedPath, waypoints: Floats, limits: Limits, window: float, step: float
 ) -> tuple[TimeLaw, Floats, Driven]:
-    """Return the fastest law whose average over a window keeps all limits, fine times, and what the robot does then.
+    """Return the fastest law whose average over a window keeps all limits, with fine times and the states there.
 
-    Limits of a tip and of torques are kept at the law's own grid: less of them is used where more comes between.
+    The law keeps limits of a tip and of torques only at its grid.  It is made again with a smaller share of them if
+    they are exceeded between grid points.
     """
     share = 1.0
     for _ in range(_SHARES):
@@ -208,9 +209,9 @@ def _averaged_law(
 def _on_steps(
     law: TimeLaw, waypoints: Floats, limits: Limits, window: float, step: float
 ) -> tuple[TimeLaw, Floats, Driven]:
-    """Return a law that keeps its limits between grid points, too, and ends on a whole step, after the `window`.
+    """Return a law that also keeps its limits between grid points, with fine times and the states there.
 
-    With it come fine times, and what the robot does then.
+    It ends on a whole step, after the `window`.
     """
     used = law.largest_shares(limits, _FINER)
     law = slowed(law, max(1.0, used.velocity, math.sqrt(used.acceleration)))
@@ -226,7 +227,7 @@ def _on_steps(
 
 
 def _averaged(law: TimeLaw, waypoints: Floats, limits: Limits, window: float, fine: Floats) -> Driven:
-    """Return what the robot does at fine times where its motion is averaged over the `window` before each."""
+    """Return the robot's states at fine times, averaged over the `window` before each."""
     moved, most = law.averages(window, fine), limits.of_joints
     positions, velocities, accelerations = moved.positions, moved.velocities, moved.accelerations
     highest = {

@@ -1,4 +1,4 @@
-"""Sends a trajectory to a UR arm, state by state, through ur_rtde, after all checks."""
+"""Sender of trajectories to a UR arm, state by state, through ur_rtde, after all checks."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ AT_START = 0.01
 """Largest distance of a joint from the start at which a program begins [rad]."""
 
 ASTRAY = 0.3
-"""Largest distance of a joint from its set value; beyond it the arm is stopped [rad]."""
+"""Distance of a joint from its set value above which the arm is stopped [rad]."""
 
 _RUNNING, _NORMAL, _REDUCED = 7, 1, 2
-"""Mode of a robot whose brakes are released, and its two safety modes in which it may move."""
+"""Mode of a robot with released brakes, and the two safety modes in which it may move."""
 
 _READ = ["timestamp", "actual_q", "robot_mode", "safety_mode", "runtime_state"]
 _PATIENCE = 8.0
@@ -35,12 +35,12 @@ Rtde: TypeAlias = Any
 _ERRORS = {kind.__name__: kind for kind in (InvalidValue, NotAvailable)}
 _GAIN = 300.0
 _STOP = 2.0
-"""Deceleration at the end, and when something is wrong [rad/s^2]."""
+"""Deceleration at the end, and after a fault [rad/s^2]."""
 
 
 @dataclass(frozen=True)
 class _Drive:
-    """States for an arm, (n, joints) [rad], one a cycle [s], with its address, model and joints."""
+    """States for an arm, (n, joints) [rad], one per cycle [s], with its address, model and joints."""
 
     host: str
     model: str
@@ -81,21 +81,21 @@ def send_trajectory(
     model : str
         Model of the arm, as its controller names it: ``UR5``.
     fastest : float
-        Largest allowed speed of a joint, > 0 [rad/s].
+        Limit of each joint's speed, > 0 [rad/s].
     go : bool
         Whether to move the arm.
     order : sequence of str, optional
-        As :func:`save_trajectory`.
+        As for :func:`save_trajectory`.
     progress : callable, optional
-        Called with the number of states sent, and of all.
+        Called with the number of states sent and the number of all.
 
     Raises
     ------
     InvalidValue
-        If the trajectory is unchecked, too fast or not of a UR arm; or the arm is another one, not ready, or not at the
-        start.
+        If the trajectory is unchecked, too fast, or not for a UR arm; or if the arm is another model, not ready, or not
+        at the start.
     NotAvailable
-        If ur_rtde is not installed, the connection fails or is lost, the arm leaves the trajectory, or it was stopped.
+        If ur_rtde is not installed, the connection fails, the arm deviates from the trajectory, or it was stopped.
     """
     names, positions, cycle = checked_states(trajectory, fastest, order)
     spawned = multiprocessing.get_context("spawn")
@@ -107,7 +107,7 @@ def send_trajectory(
     try:
         return _listened(ours, host, progress)
     finally:
-        # Without a listener, as after Ctrl-C, it stops the arm; if it hangs, the controller does so by itself.
+        # Without a listener, as after Ctrl-C, the process stops the arm. If it hangs, the controller stops the arm.
         ours.close()
         process.join(_PATIENCE)
         process.kill()
@@ -117,9 +117,9 @@ def send_trajectory(
 def checked_states(
     trajectory: Trajectory, fastest: float, order: Sequence[str] | None = None
 ) -> tuple[Sequence[str], Floats, float]:
-    """Return joints, positions, (n, joints), and cycle [s] as they are sent.
+    """Return the joints, positions, (n, joints), and cycle [s] to send.
 
-    Parameters and errors as :func:`send_trajectory`.
+    Parameters and errors are those of :func:`send_trajectory`.
     """
     limit = require_positive("fastest", fastest)
     if trajectory.proof == "unchecked":
@@ -128,7 +128,7 @@ def checked_states(
     cycle = trajectory.step
     if not np.isclose(cycle, CYCLES).any():
         raise InvalidValue(f"a controller takes a state every 0.008 s or 0.002 s, these are {cycle:g} s apart")
-    # Also the speeds between states as sent.
+    # Speeds between the states to send count, too.
     driven = np.abs(np.diff(positions, axis=0)) / cycle
     speeds = np.maximum(np.abs(velocities).max(axis=0), driven.max(axis=0, initial=0.0))
     if speeds.max() > limit * (1.0 + 1e-9):
@@ -138,7 +138,7 @@ def checked_states(
 
 
 def _listened(pipe: Connection, host: str, progress: Callable[[int, int], None] | None) -> Sent:
-    """Return the result of the process that talks to the arm; raise NotAvailable where it is silent."""
+    """Return the result of the process that talks to the arm; raise NotAvailable if it is silent."""
     while True:
         if not pipe.poll(_PATIENCE):
             raise NotAvailable(f"lost the connection to {host!r}; the controller stops the arm by itself")
@@ -155,7 +155,7 @@ def _listened(pipe: Connection, host: str, progress: Callable[[int, int], None] 
 
 
 def _talk(pipe: Connection, drive: _Drive) -> None:
-    """Check, and drive if `go`, in a process of its own, since ur_rtde may wait for ever."""
+    """Check, and drive if `go`, in a separate process, because ur_rtde may wait for ever."""
     try:
         pipe.send(("ready", 0))
         sent = _checked_and_driven(pipe, drive)
@@ -225,7 +225,7 @@ def _driven(pipe: Connection, control: Rtde, state: Rtde, drive: _Drive) -> Sent
     """Send the states; stop the arm in any case."""
     positions, cycle, worst, i = drive.positions, drive.cycle, 0.0, 0
     try:
-        # The last one is repeated until the arm has caught up.
+        # The last state is repeated until the arm has caught up.
         states = np.concatenate([positions, np.repeat(positions[-1:], held_cycles(cycle), axis=0)])
         for i, q in enumerate(states):
             began = control.initPeriod()
@@ -246,7 +246,7 @@ def _driven(pipe: Connection, control: Rtde, state: Rtde, drive: _Drive) -> Sent
             f"lost the connection after {i * cycle:.3f} s; the controller stops the arm by itself ({error})"
         ) from None
     finally:
-        # Also after Ctrl-C.
+        # The arm also stops after Ctrl-C.
         with suppress(Exception):
             control.servoStop(_STOP)
         with suppress(Exception):

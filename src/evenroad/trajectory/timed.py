@@ -1,4 +1,4 @@
-"""Trajectories without limits of jerk: each try is one compiled call."""
+"""Trajectories without limits of jerk; each try is one call of compiled code."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ def timed_path(
 ) -> TimedStates:
     """Return states, proof and measures of the fastest trajectory, with corners within `cuts`, (p,), or less.
 
-    It has these speeds along the path at start and goal.  Raises as :func:`evenroad.trajectory.make_trajectory`.
+    It has these speeds along the path at start and goal.  Errors are those of
+    :func:`evenroad.trajectory.make_trajectory`.
     """
     within = limits.along(*speeds, 1.0)
     for tried in range(TRIES):
@@ -56,7 +57,7 @@ def timed_path(
 
 
 def _refused(outcome: str, waypoints: Floats, limits: Limits, shares: dict[str, float], end: str) -> NotAvailable:
-    """Return the error of what was not made, which uses these shares or is too fast at this end."""
+    """Return the error of a trajectory that was not made: it uses these shares of limits, or is too fast at an end."""
     if outcome == "too heavy":
         shares_between = np.linspace(0.0, 1.0, 60)[:, np.newaxis]
         return limits.too_heavy(np.concatenate([a + shares_between * (b - a) for a, b in pairwise(waypoints)]))

@@ -12,7 +12,7 @@ from evenroad._native.trajectory import JointLimits, RoundedPath, Shares, States
 from evenroad.trajectory.limits import Limits
 
 _WITHIN = 1.0 - 1e-3
-"""Share of the limits used: between two grid points there may be a little more."""
+"""Share of the limits that the law uses, because values between two grid points may be slightly larger."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class TimeLaw:
 
     @property
     def native(self) -> kernel.TimeLaw:
-        """The law as the native kernel takes it."""
+        """The law in the form of the native kernel."""
         return kernel.TimeLaw(self.times, self.lengths, self.speeds, self.accelerations)
 
     def at(self, t: Floats) -> States:
@@ -55,7 +55,7 @@ class TimeLaw:
         return kernel.states(self.path, self.native, t)
 
     def averages(self, window: float, t: Floats) -> States:
-        """Return the same at rising times, averaged over the `window` before each, > 0 [s]."""
+        """Return averages of :meth:`at` over the `window` before each of some rising times, > 0 [s]."""
         return kernel.averages(self.path, self.native, window, t)
 
     def largest_shares(self, limits: Limits, samples: int) -> Shares:

@@ -1,4 +1,4 @@
-"""Constraints of the tip on a trajectory, whose rounded corners may violate them."""
+"""Constraints of the tip for a trajectory, because its rounded corners may violate them."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class ConstrainedWorld:
 
     @property
     def proof(self) -> str:
-        """As the world's: collisions are excluded and constraints kept by proof, lines are measured."""
+        """The proof of the world, for collisions and constraints; lines are only measured."""
         return self.world.proof
 
     def valid(self, q: Floats) -> Bools:
@@ -67,7 +67,7 @@ class ConstrainedWorld:
         return good
 
     def _off_line(self, chain: Chain, straight: CartesianLine, waypoints: Floats, length: float) -> Bools:
-        """Return which motions of a path leave its first line: (p - 1,); the last half step may be rounded."""
+        """Return which motions of a path leave its first line, (p - 1,); the last half step may be a rounded corner."""
         turn, here, away = line_at(chain, straight, waypoints[0])
         off_m, off_rad, along = misses(chain, between(self.world, waypoints, FINE)[1:], here, away, turn)
         over = np.flatnonzero(along >= length - 0.5 * STEP)

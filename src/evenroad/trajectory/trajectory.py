@@ -29,7 +29,7 @@ class Trajectory:
     names : tuple of str
         Names of the joints.
     times : ndarray, shape (n,)
-        Times from 0 on, at equal steps [s].
+        Times from 0, at equal steps [s].
     positions, velocities, accelerations : ndarrays, shape (n, dim)
         [rad or m, and per second].
     waypoints : ndarray, shape (p, dim)
@@ -39,10 +39,10 @@ class Trajectory:
     deviation : float
         Largest distance from the path [rad or m].
     stops : int
-        Number of corners at which the robot stops, since rounding them would collide.
+        Number of corners at which the robot stops because a rounded corner would collide.
     highest : mapping of str to float
-        ``velocity``, ``acceleration`` and ``jerk``: largest share of the limits used, at most; with a limit of jerk
-        or of a tip, with torques, and in motion on a fine grid.
+        Largest used shares of limits: ``velocity``, ``acceleration``, ``jerk`` and so on.  They are upper bounds; with
+        a limit of jerk, of a tip or of torques, and in motion, they are measured on a fine grid.
     held : mapping of str to float
         Joints of the same controller that do not move, and their positions [rad or m].
     controller : tuple of str
@@ -54,7 +54,7 @@ class Trajectory:
         Distance of the tip from each inner waypoint at which rounding may begin [m], see
         :func:`evenroad.trajectory.urscript.with_radii`; empty if not computed.
     source : mapping of str to JSON values
-        What ``evenroad plan`` or ``evenroad run`` made it of, as they write it; empty if unknown.
+        Inputs of the ``evenroad plan`` or ``evenroad run`` that made it; empty if unknown.
 
     Examples
     --------
@@ -83,7 +83,7 @@ class Trajectory:
     source: Mapping[str, Any] = field(default_factory=dict)
 
     def at(self, t: npt.ArrayLike) -> Floats:
-        """Return positions at given times, between the states by a cubic of their positions and velocities.
+        """Return positions at given times; between states they follow a cubic of positions and velocities.
 
         Parameters
         ----------
@@ -98,7 +98,7 @@ class Trajectory:
         Raises
         ------
         InvalidValue
-            For a time that it does not have.
+            For a time outside of it.
 
         Examples
         --------
@@ -167,7 +167,7 @@ class Trajectory:
         path : str or path-like
             A ``.json``, ``.csv``, ``.yaml`` (ROS 2), ``.mcap`` (a bag), ``.script`` or ``.movej.script`` (URScript).
         order : sequence of str, optional
-            As :meth:`columns`.
+            As for :meth:`columns`.
 
         Raises
         ------
@@ -176,7 +176,7 @@ class Trajectory:
         InvalidValue
             If a joint that moves is missing in `order`, or a URScript does not have six joints.
         NotAvailable
-            If the package is not installed that writes the format.
+            If the package that writes the format is not installed.
         BrokenFile
             If the file cannot be written.
 
@@ -200,7 +200,7 @@ class Trajectory:
 
     @property
     def step(self) -> float:
-        """Time between two states [s]; of a robot that stays where it is, one state, the usual one."""
+        """Time between two states [s]; the default for the single state of a robot that does not move."""
         return float(self.times[1]) if len(self.times) > 1 else STEP
 
     @property

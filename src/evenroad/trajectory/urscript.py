@@ -27,13 +27,13 @@ _AT_START = 0.01
 """Largest distance of a joint from the start at which the program begins [rad]."""
 
 _FASTEST = 3.14
-"""Largest speed of a ``movej`` that the controller takes [rad/s]."""
+"""Largest speed of a ``movej`` that the controller accepts [rad/s]."""
 
 _SAME = 1e-6
-"""Largest distance of a state from the waypoint that it stands at [rad]."""
+"""Largest distance of a state from the waypoint at which the arm rests [rad]."""
 
 _SHARES = (0.45, 0.2, 0.1, 0.05)
-"""Shares of the shorter motion at a corner, tried in turn as blends; two corners never overlap."""
+"""Shares of the shorter motion at a corner to try in turn as blends; two corners never overlap."""
 
 _CHORDS = 16
 
@@ -55,7 +55,7 @@ def servoj_script(trajectory: Trajectory, order: Sequence[str] | None = None) ->
 
 
 def held_cycles(cycle: float) -> int:
-    """Return the number of cycles for which the last state is repeated: an arm lags by about its lookahead time."""
+    """Return the number of repetitions of the last state, because an arm lags by about its lookahead time."""
     return math.ceil(2.0 * LOOKAHEAD / cycle)
 
 
@@ -63,7 +63,7 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     """Return a program of ``movej`` that drives to each waypoint of the path.
 
     Corners are rounded by `radii`; without these it stops at each.  All joints keep the limits of the slowest one.
-    Where the trajectory waits at a waypoint, the program sleeps.  Raises InvalidValue unless there are six joints.
+    If the trajectory waits at a waypoint, the program sleeps.  Raises InvalidValue unless there are six joints.
     """
     names, _ = columns_of_ur(trajectory, order)
     path = trajectory.waypoints
@@ -83,7 +83,7 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
 
 
 def _waits(trajectory: Trajectory) -> list[float]:
-    """Return for how long the trajectory stands still at each of its waypoints [s]."""
+    """Return the time that the trajectory rests at each of its waypoints [s]."""
     positions, step = trajectory.positions, trajectory.step
     waits, waypoint = [0.0] * len(trajectory.waypoints), 0
     for i in np.flatnonzero((positions[1:] == positions[:-1]).all(axis=1)):
@@ -94,16 +94,16 @@ def _waits(trajectory: Trajectory) -> list[float]:
 
 
 def with_radii(trajectory: Trajectory, world: World, tip_at: Callable[[Floats], Floats]) -> Trajectory:
-    """Return the trajectory with the radii at which a controller may leave the path before a corner, and return.
+    """Return the trajectory with radii around corners within which a controller may leave the path.
 
     The controller stays within the triangle of the corner and the two points where it leaves and returns.  A radius is
-    given where straight motions between its sides, at sixteenths of them, are free.
+    allowed if straight motions between its sides, at sixteenths of them, are free.
 
     Parameters
     ----------
     trajectory : Trajectory
     world : World
-        Checks configurations of the trajectory.
+        World that checks configurations of the trajectory.
     tip_at : callable
         Returns the positions of the tip, (n, 3) [m], at configurations, (n, dim).
     """
@@ -133,7 +133,7 @@ def _radius(tip_at: Callable[[Floats], Floats], before: Floats, corner: Floats, 
 def columns_of_ur(
     trajectory: Trajectory, order: Sequence[str] | None
 ) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
-    """Return `Trajectory.columns` of the six joints of a UR arm; InvalidValue for another number of joints."""
+    """Return `Trajectory.columns` for the six joints of a UR arm; InvalidValue for another number of joints."""
     names, tables = trajectory.columns(order)
     if len(names) != _JOINTS:
         raise InvalidValue(f"URScript needs the six joints of a UR arm, got {len(names)}: {', '.join(names)}")
