@@ -38,7 +38,7 @@ SEED = 20261121
 
 @dataclass(frozen=True)
 class Cell:
-    """The sets of one family at one n and d, with `hashes` of the stored float32 values and `measures` of each set."""
+    """The sets of one family at one n and d, with `hashes` of the stored float32 values."""
 
     path: Path
     n: int
@@ -48,7 +48,6 @@ class Cell:
     version: str
     steps: int
     hashes: tuple[str, ...]
-    measures: dict[str, tuple[float, ...]]
 
     @property
     def sets(self) -> int:
@@ -86,9 +85,8 @@ class Bank:
         record = cells[str(n)]
         try:
             made_by = {name: record[name] for name in ("method", "objective", "version", "steps")}
-            measures = {name: tuple(values) for name, values in record["measures"].items()}
             path = _file(self.folder, family, n, d)
-            return Cell(path, n, d, hashes=tuple(record["hashes"]), measures=measures, **made_by)
+            return Cell(path, n, d, hashes=tuple(record["hashes"]), **made_by)
         except (KeyError, TypeError, AttributeError) as error:
             raise BrokenFile(
                 f"the index of the bank {self.folder}: {family} n={n} d={d} is no record ({shown(error)})"

@@ -15,11 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad._terminal import LineProgress
 from evenroad.points.bank.bank import DATA, INDEX, MOST_IN_THE_CORE, SEED, Bank, cell_name
-from evenroad.points.measures import MEASURES, separation
 from evenroad.points.pointset import BELOW_ONE, PointSet
 from evenroad_studies.training import anneal_many, train_many
 from evenroad_studies.training.folder import one_at_a_time
@@ -34,14 +32,6 @@ LARGE_SETS = Path(__file__).parents[1] / "sets"
 
 LOCK = ".lock"
 """Lock file for changes of the index: several builds may work on one bank, on different cells."""
-
-MEASURED: dict[str, Callable[[Floats], float]] = {
-    "hickernell_rooted": MEASURES["hickernell"].rooted,
-    "star_rooted": MEASURES["star"].rooted,
-    "average_squared_rooted": MEASURES["average_squared"].rooted,
-    "separation_periodic": lambda points: separation(points, periodic=True),
-}
-"""Measures that the index holds of every set."""
 
 
 @dataclass(frozen=True)
@@ -131,22 +121,20 @@ def _train(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tup
 
 
 def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
-    """Write the sets of a cell as float32, then its record in the index, with measures of the stored values."""
+    """Write the sets of a cell as float32, then its record in the index."""
     rounded = np.minimum(np.stack(sets).astype(np.float32), np.float32(BELOW_ONE))
     large = folder == DATA and recipe.n > MOST_IN_THE_CORE
     path = (LARGE_SETS if large else folder) / recipe.family / cell_name(recipe.n, recipe.d)
     path.parent.mkdir(parents=True, exist_ok=True)
     with atomic_write(path) as file:
         np.save(file, rounded)
-    stored = [PointSet(each) for each in rounded]
     record = {
         "method": sets[0].origin.method,
         "objective": recipe.objective,
         "steps": recipe.steps,
         "seed": SEED,
         "version": sets[0].origin.version,
-        "hashes": [each.hash for each in stored],
-        "measures": {name: [float(f"{value(each.points):.6g}") for each in stored] for name, value in MEASURED.items()},
+        "hashes": [PointSet(each).hash for each in rounded],
     }
     with one_at_a_time(folder / LOCK):
         index_path = folder / INDEX
