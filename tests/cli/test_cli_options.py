@@ -166,7 +166,7 @@ def test_bash_completes_words(run, words, wanted):
     ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
     ("measure", "missing from evenroad measure: SET"),
     ("train -n 16 -d 2 -o a --method sgd", "--method must be one of anneal, mpmc, order, got 'sgd'"),
-    ("plot", "unknown verb 'plot'; known: bench, certify, demo, export"),
+    ("plot", "unknown verb 'plot'; known: bench, certify, certify-path, demo, export"),
     ("mesure set.npy", "unknown verb 'mesure'; did you mean 'measure'?"),
     ("plan a.yaml --robto ur5 --start home --goal up", "unknown option of evenroad plan: '--robto'; did you mean"),
     ("plan a.yaml --robot ur5 --start home --gaol up", "unknown option of evenroad plan: '--gaol'; did you mean"),

@@ -14,6 +14,7 @@ class Touch:
     share: float
     pair: int
     gap: float
+    most: float
 
 class Answers:
     answers: npt.NDArray[np.uint8]

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
+from evenroad._native.certificates import Answers
 from evenroad.certificates.claim import Claim, Claimed, claim_of
 from evenroad.certificates.elements import tables_of
 from evenroad.certificates.plain import claimed_scene
@@ -22,7 +23,7 @@ from evenroad.robots.kinematics import held_values
 
 MAGIC = "evenroad certificate 1\n"
 MOST_TASKS = 4_000_000
-_DECIDED = 1e-7
+DECIDED = 1e-7
 """Nearer bodies than this count as touching [m]."""
 PathLike = str | os.PathLike[str]
 
@@ -58,6 +59,19 @@ def certify(world: object, path: Floats, sources: Sources, file: PathLike) -> No
 
 def answers_of(claim: Claim, curves: Floats) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
     """Return the answers of a certificate and their directions, (d, 3), for curves of three control points."""
+    written = written_of(claim, curves, MOST_TASKS)
+    if written is None:
+        raise Exhausted(f"the certificate would have more than {MOST_TASKS} answers")
+    touch = written.touch
+    if touch.pair >= 0:
+        first, second = claim.pairs[touch.pair][3]
+        what = "touches" if touch.gap < DECIDED else "is not shown to be apart from"
+        raise InvalidValue(f"no certificate: motion {touch.motion} at share {touch.share:.6f}: {first} {what} {second}")
+    return written.answers, written.directions
+
+
+def written_of(claim: Claim, curves: Floats, most: int) -> Answers | None:
+    """Return what the kernel writes for curves of three control points, None if it takes more than `most` answers."""
     # Imported late: nothing else needs it.
     from evenroad._native import certificates as native
 
@@ -65,7 +79,7 @@ def answers_of(claim: Claim, curves: Floats) -> tuple[npt.NDArray[np.uint8], npt
     stops = np.cumsum([len(node.shapes) for node in claim.nodes], dtype=np.int64)
     rows = [(node.frame, end - len(node.shapes), end) for node, end in zip(claim.nodes, stops, strict=True)]
     both = np.array([pair[:2] for pair in claim.pairs], dtype=np.int64).reshape(-1, 2)
-    written = native.write_answers(
+    return native.write_answers(
         tables_of(claim.shapes),
         claim.tree.tables(),
         np.array(rows, dtype=np.int64).reshape(-1, 3),
@@ -73,16 +87,8 @@ def answers_of(claim: Claim, curves: Floats) -> tuple[npt.NDArray[np.uint8], npt
         both,
         np.array([keep for _, _, keep, _ in claim.pairs], dtype=float),
         np.ascontiguousarray(curves, dtype=float),
-        MOST_TASKS,
+        most,
     )
-    if written is None:
-        raise Exhausted(f"the certificate would have more than {MOST_TASKS} answers")
-    touch = written.touch
-    if touch.pair >= 0:
-        first, second = claim.pairs[touch.pair][3]
-        what = "touches" if touch.gap < _DECIDED else "is not shown to be apart from"
-        raise InvalidValue(f"no certificate: motion {touch.motion} at share {touch.share:.6f}: {first} {what} {second}")
-    return written.answers, written.directions
 
 
 def packed(answers: npt.NDArray[np.uint8]) -> bytes:

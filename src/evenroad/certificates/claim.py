@@ -13,6 +13,7 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.loading.description import RobotDescription
 from evenroad.robots.joint import Joint
+from evenroad.robots.kinematics import Tree as RobotTree
 from evenroad.robots.kinematics import joint_motion
 from evenroad.scenes.scene import Scene
 
@@ -70,7 +71,7 @@ class Claim:
     pairs: tuple[tuple[int, int, float, tuple[str, str]], ...]
 
 
-def tree_of(urdf: RobotDescription, claimed: Claimed) -> Tree:
+def tree_of(urdf: RobotTree, claimed: Claimed) -> Tree:
     """Return the frames of a robot; InvalidValue if a joint of the path is none that its file has."""
     placement: dict[str, tuple[int, Pose]] = {urdf.links[0]: (0, IDENTITY)}
     moved: list[tuple[int, Joint, Pose, int, float, float]] = []

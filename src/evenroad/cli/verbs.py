@@ -30,6 +30,10 @@ VERBS = {
         "evenroad.cli.certify:Certify",
         "show what a roadmap of points guarantees, whatever the obstacles",
     ),
+    "certify-path": (
+        "evenroad.cli.certify_path:CertifyPath",
+        "prove another planner's path free, or find where it first touches",
+    ),
     "robot": ("evenroad.cli.robot:Robot", "show an arm's joints, limits and shapes, and how fast it is checked"),
     "generate": (
         "evenroad.cli.generate:Generate",
@@ -51,7 +55,7 @@ ENTRY_POINTS = "evenroad.verbs"
 
 GROUPS = {
     "a path, from the plan to the robot": (
-        ("plan", "view", "send", "run", "roadmap", "robot", "generate", "demo"),
+        ("plan", "view", "send", "run", "certify-path", "roadmap", "robot", "generate", "demo"),
         (
             "evenroad plan box-reach.yaml --robot ur5 --start home --goal inside",
             "evenroad view box-reach.json --html reach.html",
@@ -112,7 +116,7 @@ def _run(arguments: list[str]) -> int:
         for title, (names, examples) in GROUPS.items():
             print(f"\n{title}:")
             for name in names:
-                print(fill(f"  {name:8} {ABOUT[name]}", table_width(), subsequent_indent=" " * 11))
+                print(fill(f"  {name:12} {ABOUT[name]}", table_width(), subsequent_indent=" " * 15))
             print("".join(f"    $ {example}\n" for example in examples), end="")
         return DONE
     if verb in COMPLETION:

@@ -32,7 +32,7 @@ TOPIC = "/joint_trajectory"
 Message: TypeAlias = Any
 """A message of ROS 2; its types are made at run time."""
 _TABLES = ("positions", "velocities", "accelerations")
-_MESSAGE = "trajectory_msgs/msg/JointTrajectory"
+MESSAGE = "trajectory_msgs/msg/JointTrajectory"
 
 
 def save_trajectory(path: str | os.PathLike[str], trajectory: Trajectory, order: Sequence[str] | None = None) -> None:
@@ -229,7 +229,7 @@ def joint_trajectory(
 
     header = make("std_msgs/msg/Header", stamp=make("builtin_interfaces/msg/Time", sec=0, nanosec=0), frame_id="")
     points = [point(time, *rows) for time, *rows in zip(trajectory.times, *tables, strict=True)]
-    return make(_MESSAGE, header=header, joint_names=list(names), points=points)
+    return make(MESSAGE, header=header, joint_names=list(names), points=points)
 
 
 def _mcap(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
@@ -240,8 +240,8 @@ def _mcap(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"
         with rosbags.Writer(bag, version=9, storage_plugin=rosbags.StoragePlugin.MCAP) as writer:
-            connection = writer.add_connection(TOPIC, _MESSAGE, typestore=store)
-            writer.write(connection, 0, store.serialize_cdr(message, _MESSAGE))
+            connection = writer.add_connection(TOPIC, MESSAGE, typestore=store)
+            writer.write(connection, 0, store.serialize_cdr(message, MESSAGE))
         return (bag / "bag.mcap").read_bytes()
 
 

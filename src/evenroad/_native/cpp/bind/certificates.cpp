@@ -137,7 +137,8 @@ void add_certificates(nb::module_& module) {
       .def_ro("motion", &Touch::motion)
       .def_ro("share", &Touch::share)
       .def_ro("pair", &Touch::pair)
-      .def_ro("gap", &Touch::gap);
+      .def_ro("gap", &Touch::gap)
+      .def_ro("most", &Touch::most);
   nb::class_<Answers>(part, "Answers")
       .def_ro("answers", &Answers::answers)
       .def_ro("directions", &Answers::directions)

@@ -1,6 +1,7 @@
 // GJK (Gilbert, Johnson, Keerthi 1988) between two nodes at both ends of a stretch.
 #include "certificates/separate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -51,7 +52,8 @@ bool has(const robot::Simplex& simplex, const Vector& point) {
 }  // namespace
 
 Separation separate(const Nodes& nodes, const Moved& moved, const Vector& first, By by, When when, double enough) {
-  Separation best{{1.0, 0.0, 0.0}, -std::numeric_limits<double>::infinity()};
+  constexpr double FAR = std::numeric_limits<double>::infinity();
+  Separation best{{1.0, 0.0, 0.0}, -FAR, FAR};
   robot::Simplex simplex;
   Vector v = first;
   if (!(squared_length(v) > NOTHING * NOTHING)) v = {1e-9, 1e-9, 1e-9};
@@ -60,11 +62,12 @@ Separation separate(const Nodes& nodes, const Moved& moved, const Vector& first,
     if (size < NOTHING) break;
     const Vector unit = v * (1.0 / size), point = least_along(nodes, moved, unit, by, when);
     const double gap = dot(point, unit);
-    if (gap > best.gap) best = {unit, gap};
+    if (gap > best.gap) best.direction = unit, best.gap = gap;
     if (best.gap > enough || simplex.size == 4 || has(simplex, point)) break;
     if (simplex.size > 0 && size - gap < 1e-10 + 1e-7 * size) break;
     simplex.corners[simplex.size++] = point;
     robot::nearest(simplex, v);
+    best.most = simplex.size == 0 ? 0.0 : std::min(best.most, std::sqrt(squared_length(v)));
     if (simplex.size == 0) break;
   }
   return best;

@@ -8,6 +8,7 @@ namespace evenroad::certificates {
 struct Separation {
   Vector direction{};  // of length 1, from the first node to the second
   double gap = 0.0;    // along it, to the first order: of what moves, at both ends of the stretch
+  double most = 0.0;   // two places of the nodes are so near, in one of these states; 0 of what has one in common
 };
 
 enum class When { BOTH, MIDDLE };

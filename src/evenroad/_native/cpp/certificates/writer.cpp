@@ -50,7 +50,8 @@ class Writer {
       if (const auto answer = by_direction(moved, best.direction, enough, by)) return *answer;
     }
     if (many) return first.corners > MANY ? HALVE_FIRST : HALVE_SECOND;
-    const double still = separate(nodes_, moved, between, by, When::MIDDLE, 1e9).gap - keep;
+    const Separation at_middle = separate(nodes_, moved, between, by, When::MIDDLE, 1e9);
+    const double still = at_middle.gap - keep;
     const double travel = still - (best.gap - keep);
     const bool both = first.elements == 1 && second.elements == 1;
     const Answer halve = first.elements == 1                ? HALVE_SECOND
@@ -59,12 +60,13 @@ class Writer {
                                                             : HALVE_FIRST;
     // What is no number touches, too.
     if (both && (!(still >= TOUCHING) || task.level >= DEEPEST)) {
-      note(task, still);
+      note(task, still, at_middle.most - keep);
       return HALVE_TIME;
     }
     const double largest = std::max(size_of(first), size_of(second));
+    // Nodes that are nearer than what touches have elements that are: no shorter stretch tells them apart.
     const bool by_parts =
-        !(still >= SPARE) || (travel > 8.0 * still && largest > 4.0 * travel) || task.level >= DEEPEST;
+        !(still >= TOUCHING) || (travel > 8.0 * still && largest > 4.0 * travel) || task.level >= DEEPEST;
     return by_parts && !both ? halve : HALVE_TIME;
   }
 
@@ -95,11 +97,12 @@ class Writer {
     return answer;
   }
 
-  void note(const Task& task, double still) {
+  void note(const Task& task, double still, double most) {
     const double when = task.middle();
-    if (touched_ >= 0.0 && touched_ <= when) return;
+    // Of several pairs in one state, the one whose points are nearest is noted.
+    if (touched_ >= 0.0 && (touched_ < when || (touched_ == when && !(most < written.touch.most)))) return;
     touched_ = when;
-    written.touch = {task.motion, task.pair, when - static_cast<double>(task.motion), still};
+    written.touch = {task.motion, task.pair, when - static_cast<double>(task.motion), still, most};
   }
 
   Nodes& nodes_;

@@ -20,6 +20,7 @@ struct Touch {
   std::int64_t motion = 0, pair = -1;
   double share = 0.0;  // of the motion
   double gap = 0.0;    // in that state, beyond what is to be kept; of what is in contact < 0
+  double most = 0.0;   // two places are so near in that state, beyond what is to be kept
 };
 
 /// What a certificate holds; without a certificate `touch.pair` is >= 0.
