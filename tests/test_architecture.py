@@ -58,7 +58,7 @@ TYPES = "for type checkers"
 
 UPWARD = {
     ("collision.arm_world", "ArmWorld.apart"): {"infeasibility.proof"},
-    ("planning.result", "PlanResult.certify"): {"certificates.certify"},
+    ("planning.result", "PlanResult.certify"): {"certificates.certify", "certificates.no_path"},
     ("planning.result", "PlanResult.save"): {"io"},
     ("planning.result", "PlanResult.load"): {"io"},
     ("planning.result", "PlanResult.plot"): {"viz.result"},

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import itertools
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ from evenroad_verify.errors import BadInput, Floats, demand, number
 
 MAGIC = b"evenroad certificate 1\n"
 MOST_MOTIONS = 1 << 20
+_Read = TypeVar("_Read")
 FARTHEST = 1000.0
 """Largest value of a joint [rad or m]."""
 
@@ -41,53 +43,69 @@ class Certificate:
 
 def read_certificate(data: bytes) -> Certificate:
     """Return the certificate that some bytes are; Refused for any others."""
-    demand(data.startswith(MAGIC), "this is no certificate of version 1")
-    text, _, body = data[len(MAGIC) :].partition(b"\n\n")
+    return read_file(data, MAGIC, _certificate)
+
+
+def read_file(data: bytes, magic: bytes, read: Callable[[dict[str, list[str]], bytes], _Read]) -> _Read:
+    """Return what `read` makes of the values of the header's lines, by their keys, and of the bytes that follow."""
+    demand(data.startswith(magic), "this is no certificate of version 1")
+    text, _, body = data[len(magic) :].partition(b"\n\n")
     said: dict[str, list[str]] = {}
     try:
         for line in text.decode("utf-8").split("\n"):
             key, _, value = line.partition(" ")
             said.setdefault(key, []).append(value)
-        return _certificate(said, body)
+        return read(said, body)
     except (UnicodeDecodeError, BadInput, ValueError) as error:
         demand(False, f"its header is broken: {error}")
         raise
 
 
 def _certificate(said: dict[str, list[str]], body: bytes) -> Certificate:
-    once = ("inputs", "degree", "motions", "answers", "directions")
-    for key in once:
+    once = ("degree", "motions", "answers", "directions")
+    head = head_of(said, once)
+    dim = len(head["joints"])
+    degree, motions, answers, directions = (count_of(said[key][0]) for key in once)
+    demand(degree in (1, 2) and 0 < motions < MOST_MOTIONS, "it has no path, or too long a one")
+    sizes = [8 * (degree * motions + 1) * dim, (answers + 2) // 3, 12 * directions]
+    (path, packed, table), head["carried"] = tables_of(said, body, sizes)
+    points = np.frombuffer(path, "<f8").reshape(-1, dim)
+    demand(np.isfinite(points).all() and np.abs(points).max() <= FARTHEST, "a waypoint is no number, or too large")
+    first, last = points[:-degree:degree], points[degree::degree]
+    middle = points[1::2] if degree == 2 else 0.5 * (first + last)
+    given = np.frombuffer(table, "<f4").reshape(-1, 3).astype(float)
+    demand(np.isfinite(given).all() and not (np.abs(given) > 2.0).any(), "a direction is no number, or too long")
+    curves = np.stack([first, middle, last], axis=1)
+    return Certificate(**head, curves=curves, answers=_unpacked(packed, answers), directions=given)
+
+
+def head_of(said: dict[str, list[str]], once: tuple[str, ...], others: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return what every kind of certificate says, beside lines that it must have `once`, and `others`."""
+    for key in ("inputs", *once):
         demand(len(said.get(key, ())) == 1, f"its header must have one line {key!r}")
-    known = {*once, "joint", "held", "clearance", "padding", "robot", "scene"}
+    known = {"inputs", *once, *others, "joint", "held", "clearance", "padding", "robot", "scene"}
     demand(said.keys() <= known, "its header has lines that are not known")
     joints, clearance = said.get("joint", []), said.get("clearance", ["0"])
     robot, scene = (said.get(key, [None]) for key in ("robot", "scene"))
     demand(joints and len(set(joints)) == len(joints), "its header names a joint twice, or none")
     demand(len(clearance) == len(robot) == len(scene) == 1, "its header has a line twice")
-    degree, motions, answers, directions = (_count(said[key][0]) for key in once[1:])
-    demand(degree in (1, 2) and 0 < motions < MOST_MOTIONS, "it has no path, or too long a one")
-    sizes = [8 * (degree * motions + 1) * len(joints), (answers + 2) // 3, 12 * directions]
-    carries = robot != [None] or scene != [None]
-    demand(len(body) == sum(sizes) or (carries and len(body) > sum(sizes)), "its length is not what its header says")
-    points = np.frombuffer(body[: sizes[0]], "<f8").reshape(-1, len(joints))
-    demand(np.isfinite(points).all() and np.abs(points).max() <= FARTHEST, "a waypoint is no number, or too large")
-    first, last = points[:-degree:degree], points[degree::degree]
-    middle = points[1::2] if degree == 2 else 0.5 * (first + last)
-    given = np.frombuffer(body[sizes[0] + sizes[1] : sum(sizes)], "<f4").reshape(-1, 3).astype(float)
-    demand(np.isfinite(given).all() and not (np.abs(given) > 2.0).any(), "a direction is no number, or too long")
-    return Certificate(
-        inputs=said["inputs"][0],
-        joints=tuple(joints),
-        curves=np.stack([first, middle, last], axis=1),
-        answers=_unpacked(body[sizes[0] : sizes[0] + sizes[1]], answers),
-        directions=given,
-        held=_named(said.get("held", [])),
-        clearance=_length(clearance[0]),
-        padding={link: _length(value) for link, value in _named(said.get("padding", [])).items()},
-        robot=robot[0],
-        scene=scene[0],
-        carried=tuple(_files(body[sum(sizes) :])),
-    )
+    return {
+        "inputs": said["inputs"][0],
+        "joints": tuple(joints),
+        "held": _named(said.get("held", [])),
+        "clearance": _length(clearance[0]),
+        "padding": {link: _length(value) for link, value in _named(said.get("padding", [])).items()},
+        "robot": robot[0],
+        "scene": scene[0],
+    }
+
+
+def tables_of(said: dict[str, list[str]], body: bytes, sizes: list[int]) -> tuple[list[bytes], tuple[bytes, ...]]:
+    """Return the tables of some sizes that follow a header, and the files that it carries."""
+    size, carries = sum(sizes), said.keys() & {"robot", "scene"}
+    demand(len(body) == size or (carries and len(body) > size), "its length is not what its header says")
+    stops = np.cumsum([0, *sizes]).tolist()
+    return [body[begin:end] for begin, end in itertools.pairwise(stops)], tuple(_files(body[size:]))
 
 
 def _files(data: bytes) -> Iterator[bytes]:
@@ -99,7 +117,8 @@ def _files(data: bytes) -> Iterator[bytes]:
         data = data[8 + size :]
 
 
-def _count(text: str) -> int:
+def count_of(text: str) -> int:
+    """Return a count of a header."""
     demand(text.isascii() and text.isdigit() and len(text) < 10, f"not a count: {text[:20]!r}")
     return int(text)
 

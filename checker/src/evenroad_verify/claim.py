@@ -85,20 +85,13 @@ def read_inputs(
 def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
     """Return what a certificate must prove about its inputs."""
     robot, scene = inputs.robot, inputs.scene
-    frames, nodes, bodies = frames_of(robot, certificate), Nodes(), dict[str, list[Shape]]()
-    place = dict(frames.place)
-    for link in robot.links:
-        if link in robot.shapes:
-            bodies[link] = [shape.at(place[link][1]) for shape in robot.shapes[link]]
-    for held in scene.held:
-        require(held.link in place and held.name not in place, f"{held.name} is held by no link, or has a link's name")
-        place[held.name] = place[held.link]
-        bodies[held.name] = [shape.at(place[held.link][1]) for shape in held.shapes]
+    frames, nodes = frames_of(robot, certificate), Nodes()
+    bodies, place = bodies_of(inputs, frames)
     demand(certificate.padding.keys() <= bodies.keys(), "a link is padded that has no shape")
-    _require_limits(frames, scene, certificate)
+    require_limits(frames, scene, certificate)
     around = _around(frames, nodes, bodies, place, scene, certificate)
     whole = {name: nodes.whole(place[name][0], shapes) for name, shapes in bodies.items()}
-    touching = _disabled(robot, scene, bodies)
+    touching = may_touch(robot, scene, bodies)
     names = list(bodies)
     among = [
         Pair(whole[first], whole[second], 0.0, (first, second))
@@ -106,7 +99,20 @@ def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
         for second in names[i + 1 :]
         if place[first][0] != place[second][0] and frozenset((first, second)) not in touching
     ]
-    return Claim(frames, nodes, (*around, *among), _silent(robot, scene, bodies, place, certificate))
+    return Claim(frames, nodes, (*around, *among), silent(robot, scene, bodies, place, certificate))
+
+
+def bodies_of(inputs: Inputs, frames: Frames) -> tuple[dict[str, list[Shape]], Places]:
+    """Return the shapes of links and of what is held, each in its frame, and the places of all links in frames."""
+    robot, bodies, place = inputs.robot, dict[str, list[Shape]](), dict(frames.place)
+    for link in robot.links:
+        if link in robot.shapes:
+            bodies[link] = [shape.at(place[link][1]) for shape in robot.shapes[link]]
+    for held in inputs.scene.held:
+        require(held.link in place and held.name not in place, f"{held.name} is held by no link, or has a link's name")
+        place[held.name] = place[held.link]
+        bodies[held.name] = [shape.at(place[held.link][1]) for shape in held.shapes]
+    return bodies, place
 
 
 def _around(
@@ -135,7 +141,7 @@ def _around(
     return pairs
 
 
-def _disabled(robot: Robot, scene: Scene, bodies: dict[str, list[Shape]]) -> set[frozenset[str]]:
+def may_touch(robot: Robot, scene: Scene, bodies: dict[str, list[Shape]]) -> set[frozenset[str]]:
     """Return pairs that may touch: those of the SRDF or, without any there, neighbours; and what a held body may."""
     touching = {frozenset((held.name, link)) for held in scene.held for link in (held.link, *held.touches)}
     if robot.disabled is not None:
@@ -152,7 +158,7 @@ def _disabled(robot: Robot, scene: Scene, bodies: dict[str, list[Shape]]) -> set
     return touching
 
 
-def _require_limits(frames: Frames, scene: Scene, certificate: Certificate) -> None:
+def require_limits(frames: Frames, scene: Scene, certificate: Certificate) -> None:
     """Raise Refused if a control point leaves the limits of a joint, or those of the scene."""
     limits = {joint.name: (joint.lower, joint.upper) for joint in frames.joints}
     for column, name in enumerate(certificate.joints):
@@ -162,7 +168,7 @@ def _require_limits(frames: Frames, scene: Scene, certificate: Certificate) -> N
             demand(within or high - low > 1000.0, f"{name} leaves its limits")
 
 
-def _silent(
+def silent(
     robot: Robot, scene: Scene, bodies: dict[str, list[Shape]], place: Places, certificate: Certificate
 ) -> tuple[str, ...]:
     """Return lines about what is not claimed."""

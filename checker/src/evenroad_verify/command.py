@@ -13,6 +13,8 @@ import numpy as np
 from evenroad_verify.certificate import Certificate, read_certificate
 from evenroad_verify.claim import Claim, Inputs, claim_of, read_inputs
 from evenroad_verify.errors import BadInput, Refused, demand
+from evenroad_verify.no_path import MAGIC as OF_NO_PATH
+from evenroad_verify.no_path import Shown, read_no_path, verify_no_path
 from evenroad_verify.proof import prove
 from evenroad_verify.solids import require_outside
 
@@ -41,7 +43,7 @@ def verify(certificate: bytes, inputs: Inputs) -> Proved:
 
 def main(words: Sequence[str] | None = None) -> int:
     """Check a certificate; return 0 if it is accepted, 1 if it is refused, 2 if an input cannot be read."""
-    parser = argparse.ArgumentParser(prog="evenroad-verify", description="Check that a path is proved free of contact.")
+    parser = argparse.ArgumentParser(prog="evenroad-verify", description="Check a proof about the paths of a robot.")
     parser.add_argument("certificate", type=Path, help="the certificate")
     own = "; - or none: the one that the certificate carries"
     parser.add_argument("robot", type=_file, nargs="?", help=f"the robot's URDF{own}")
@@ -54,20 +56,23 @@ def main(words: Sequence[str] | None = None) -> int:
     packages = {name: Path(folder) for name, _, folder in (each.partition("=") for each in asked.package)}
     try:
         data = asked.certificate.read_bytes()
-        inputs = read_inputs(asked.robot, asked.scene, asked.srdf, packages, read_certificate(data))
+        is_of_path = not data.startswith(OF_NO_PATH)
+        carrier = read_certificate(data) if is_of_path else read_no_path(data).terminals
+        inputs = read_inputs(asked.robot, asked.scene, asked.srdf, packages, carrier)
         for name, content in inputs.carried if asked.write else ():
             asked.write.mkdir(parents=True, exist_ok=True)
             (asked.write / name).write_bytes(content)
-        proved = verify(data, inputs)
+        lines = _lines(verify(data, inputs)) if is_of_path else _lines_of_no_path(verify_no_path(data, inputs))
         if asked.path is not None:
-            _require_same_path(proved.certificate, asked.path)
+            demand(is_of_path, "it proves that there is no path")
+            _require_same_path(carrier, asked.path)
     except Refused as error:
         print(f"REFUSED: {error}")
         return REFUSED
     except (BadInput, OSError, RecursionError) as error:
         print(f"evenroad-verify: {error}", file=sys.stderr)
         return BAD_INPUT
-    print("\n".join(_lines(proved)))
+    print("\n".join(lines))
     return ACCEPTED
 
 
@@ -87,14 +92,32 @@ def _require_same_path(certificate: Certificate, path: Path) -> None:
     demand(same.shape == points.shape and (same == points).all(), f"{path} has other waypoints than the certificate")
 
 
+def _lines_of_no_path(shown: Shown) -> list[str]:
+    """Return what is printed of an accepted certificate of no path."""
+    terminals = shown.certificate.terminals
+    goals = "the goal" if len(terminals.curves) == 1 else f"any of the {len(terminals.curves)} goals"
+    lines = [f"PROVED: no path leads from the start to {goals}: each one touches something{_kept(terminals)}"]
+    for name, *values in zip(terminals.joints, terminals.curves[0, 0], *terminals.curves[:, 2], strict=True):
+        lines.append(f"  {name}: from {values[0]:.6g} to {' or '.join(f'{value:.6g}' for value in values[1:])}")
+    lines.append(f"  whatever other joints than these do: {', '.join(shown.joints)}")
+    lines.append(f"  {shown.blocked} cells are blocked; smallest overlap of a cell: {shown.least:.3g} m")
+    lines.append(f"pairs that block the way ({len(shown.pairs)}):")
+    lines += [f"  {first} - {second}" for first, second in shown.pairs]
+    return [*lines, "not claimed:", *(f"  {line}" for line in shown.silent)]
+
+
+def _kept(read: Certificate) -> str:
+    """Return what is said of clearance and padding."""
+    kept = f", {read.clearance:g} m from all obstacles" if read.clearance else ""
+    return kept + "".join(f", {link} {metres:g} m more" for link, metres in read.padding.items())
+
+
 def _lines(proved: Proved) -> list[str]:
     """Return what is printed of an accepted certificate."""
     read, claim = proved.certificate, proved.claim
     straight = np.abs(read.curves[:, 1] - 0.5 * (read.curves[:, 0] + read.curves[:, 2])).max() < 1e-12
-    kept = f", {read.clearance:g} m from all obstacles" if read.clearance else ""
-    for link, metres in read.padding.items():
-        kept += f", {link} {metres:g} m more"
-    lines = [f"PROVED: {len(read.curves)} {'straight motions' if straight else 'curves'} touch nothing{kept}"]
+    kind = "straight motions" if straight else "curves"
+    lines = [f"PROVED: {len(read.curves)} {kind} touch nothing{_kept(read)}"]
     for name, first, last in zip(read.joints, read.curves[0, 0], read.curves[-1, 2], strict=True):
         lines.append(f"  {name}: from {first:.6g} to {last:.6g}")
     lines.append(f"  smallest gap of a step of the proof: {proved.least:.3g} m")

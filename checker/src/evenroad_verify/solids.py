@@ -32,7 +32,7 @@ def require_outside(claim: Claim, certificate: Certificate, tasks: Ints) -> int:
         pair = claim.pairs[number]
         for inner, outer in ((pair.first, pair.second), (pair.second, pair.first)):
             frame, other = claim.nodes.frame[inner], claim.nodes.frame[outer]
-            solids = [solid for shape, _ in claim.nodes.parts[outer] for solid in _pieces(shape, pieces)]
+            solids = [solid for shape, _ in claim.nodes.parts[outer] for solid in pieces_of(shape, pieces)]
             opened |= {id(triangles) for triangles, closed in solids if not closed}
             points = np.array(
                 [solid[0, 0] for shape, _ in claim.nodes.parts[inner] for solid in _points(shape, pieces)]
@@ -46,10 +46,10 @@ def require_outside(claim: Claim, certificate: Certificate, tasks: Ints) -> int:
 
 def _points(shape: Shape, pieces: dict[int, list[tuple[Floats, bool]]]) -> list[Floats]:
     """Return corners of which the first one is a point of each connected piece of a shape."""
-    return [piece for piece, _ in _pieces(shape, pieces)] if shape.surface else [shape.points[shape.corners]]
+    return [piece for piece, _ in pieces_of(shape, pieces)] if shape.surface else [shape.points[shape.corners]]
 
 
-def _pieces(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list[tuple[Floats, bool]]:
+def pieces_of(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list[tuple[Floats, bool]]:
     """Return the connected pieces of a surface, each with whether it is closed: every edge is in an even number."""
     if not shape.surface:
         return []
@@ -79,10 +79,10 @@ def _inside(points: Floats, triangles: Floats) -> bool:
     low, high = corners.min(1), corners.max(1)
     points = points[((points >= low) & (points <= high)).all(axis=1)]
     step = max(1, _MOST // len(triangles))
-    return any(_odd(points[i : i + step], triangles).any() for i in range(0, len(points), step))
+    return any(are_inside(points[i : i + step], triangles).any() for i in range(0, len(points), step))
 
 
-def _odd(points: Floats, triangles: Floats) -> Bools:
+def are_inside(points: Floats, triangles: Floats) -> Bools:
     """Return which rays from points, (n, 3), cross the triangles an odd number of times."""
     odd, left = np.zeros(len(points), bool), np.arange(len(points))
     for way in _WAYS / np.linalg.norm(_WAYS, axis=1, keepdims=True):

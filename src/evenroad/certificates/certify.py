@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,9 @@ from evenroad.certificates.sources import Files, robot_files, scene_files
 from evenroad.certificates.sources import Sources as Sources
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import Exhausted, InvalidValue, shown
+from evenroad.loading.description import RobotDescription
 from evenroad.robots.kinematics import held_values
+from evenroad.scenes.scene import Scene
 
 MAGIC = "evenroad certificate 1\n"
 MOST_TASKS = 4_000_000
@@ -36,6 +39,43 @@ def certify(world: object, path: Floats, sources: Sources, file: PathLike) -> No
     """
     if not isinstance(world, ArmWorld):
         raise InvalidValue(f"a certificate is about a path of an arm in a scene, not in {shown(world)}")
+    claimed = claimed_by(sources, world)
+    claim = claim_of(claimed.urdf, claimed.scene, claimed.beside)
+    curves = np.stack([path[:-1], 0.5 * (path[:-1] + path[1:]), path[1:]], axis=1)
+    answers, directions = answers_of(claim, curves)
+    counts = ["degree 1", f"motions {len(curves)}", f"answers {len(answers)}", f"directions {len(directions)}"]
+    tables = path.astype("<f8").tobytes() + packed(answers) + directions.astype("<f4").tobytes()
+    claimed.write(Path(file), MAGIC, counts, tables)
+
+
+@dataclass(frozen=True)
+class OfFiles:
+    """What a certificate is about: what files say, and what it says beside them."""
+
+    files: tuple[Files, Files]
+    urdf: RobotDescription
+    scene: Scene
+    beside: Claimed
+
+    def write(self, file: Path, magic: str, counts: list[str], tables: bytes) -> None:
+        """Write a certificate: a header that ends with some counts, tables, and the files that it carries."""
+        digest, beside = hashlib.sha256(), self.beside
+        for content in (each for files in self.files for each in files.contents):
+            digest.update(hashlib.sha256(content).digest())
+        lines = [f"inputs {digest.hexdigest()}", *(f"joint {name}" for name in beside.joints)]
+        for name, files in zip(("robot", "scene"), self.files, strict=True):
+            lines += [f"{name} {files.made_of}"] if files.carried else []
+        lines += [f"held {value!r} {name}" for name, value in beside.held.items()]
+        lines += [f"clearance {beside.clearance!r}"] if beside.clearance else []
+        lines += [f"padding {value!r} {link}" for link, value in beside.padding.items() if value]
+        carried = [each for files in self.files if files.carried for each in files.contents]
+        with atomic_write(file) as stream:
+            stream.write((magic + "\n".join([*lines, *counts]) + "\n\n").encode() + tables)
+            stream.write(b"".join(len(each).to_bytes(8, "little") + each for each in carried))
+
+
+def claimed_by(sources: Sources, world: ArmWorld) -> OfFiles:
+    """Return what a certificate of a world is about."""
     robot, urdf = robot_files(sources, world)
     claims = claimed_scene(world)
     scene = scene_files(sources, world, claims)
@@ -47,14 +87,7 @@ def certify(world: object, path: Floats, sources: Sources, file: PathLike) -> No
         clearance=world.clearance,
         padding=dict(world.robot.padding),
     )
-    claim = claim_of(urdf, claims, claimed)
-    curves = np.stack([path[:-1], 0.5 * (path[:-1] + path[1:]), path[1:]], axis=1)
-    answers, directions = answers_of(claim, curves)
-    text = _header(claimed, (robot, scene), len(curves), len(answers), len(directions))
-    content = path.astype("<f8").tobytes() + packed(answers) + directions.astype("<f4").tobytes()
-    carried = [each for files in (robot, scene) if files.carried for each in files.contents]
-    with atomic_write(Path(file)) as stream:
-        stream.write(text.encode() + content + b"".join(len(each).to_bytes(8, "little") + each for each in carried))
+    return OfFiles((robot, scene), urdf, claims, claimed)
 
 
 def answers_of(claim: Claim, curves: Floats) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
@@ -95,17 +128,3 @@ def packed(answers: npt.NDArray[np.uint8]) -> bytes:
     """Return answers of 0 to 5, three in a byte."""
     digits = np.concatenate([answers, np.zeros(-len(answers) % 3, np.uint8)]).reshape(-1, 3)
     return (digits @ np.array([1, 6, 36], np.uint8)).astype(np.uint8).tobytes()
-
-
-def _header(claimed: Claimed, inputs: tuple[Files, Files], motions: int, answers: int, directions: int) -> str:
-    digest = hashlib.sha256()
-    for content in (each for files in inputs for each in files.contents):
-        digest.update(hashlib.sha256(content).digest())
-    lines = [f"inputs {digest.hexdigest()}", *(f"joint {name}" for name in claimed.joints)]
-    for name, files in zip(("robot", "scene"), inputs, strict=True):
-        lines += [f"{name} {files.made_of}"] if files.carried else []
-    lines += [f"held {value!r} {name}" for name, value in claimed.held.items()]
-    lines += [f"clearance {claimed.clearance!r}"] if claimed.clearance else []
-    lines += [f"padding {value!r} {link}" for link, value in claimed.padding.items() if value]
-    lines += ["degree 1", f"motions {motions}", f"answers {answers}", f"directions {directions}"]
-    return MAGIC + "\n".join(lines) + "\n\n"

@@ -115,7 +115,7 @@ def claim_of(urdf: RobotDescription, scene: Scene, claimed: Claimed) -> Claim:
     pairs = [*_around(bodies, placement, obstacles, scene, claimed, nodes)]
     first = len(nodes)
     nodes += [Node(placement[name][0], tuple(numbers)) for name, numbers in bodies.items()]
-    touching, names = _touching(urdf, scene, bodies, claimed), list(bodies)
+    touching, names = touching_of(urdf, scene, bodies, claimed), list(bodies)
     for i, name in enumerate(names):
         for j in range(i + 1, len(names)):
             if placement[name][0] != placement[names[j]][0] and frozenset((name, names[j])) not in touching:
@@ -148,9 +148,7 @@ def _around(
         yield len(nodes) - 1, around[touched], claimed.clearance + padding, (" and ".join(names), "an obstacle")
 
 
-def _touching(
-    urdf: RobotDescription, scene: Scene, bodies: Mapping[str, list[int]], claimed: Claimed
-) -> set[frozenset[str]]:
+def touching_of(urdf: RobotDescription, scene: Scene, bodies: Container[str], claimed: Claimed) -> set[frozenset[str]]:
     """Return pairs of links that may touch: those of the SRDF, else neighbours; and what a held body may."""
     touching = {frozenset((held.name, link)) for held in scene.attached for link in (held.link, *held.touches)}
     return touching | (claimed.disabled or neighbours(urdf, bodies))

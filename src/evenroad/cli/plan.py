@@ -264,7 +264,7 @@ class PlanArm(PlanOptions, RobotOptions):
     clearance: float = 0.0
     """Distance to keep from all obstacles, 0 to 1, in metres; not from the arm itself."""
     certificate: Path | None = None
-    """Write a certificate here: a proof that the path is free, which evenroad-verify checks without evenroad."""
+    """Write a certificate here: a proof that the path is free, or that there is none, which evenroad-verify checks."""
     embed: bool = False
     """The certificate carries robot and scene, too; else it does only where a checker does not read their format."""
     trajectory: Repeatable[tuple[Path, ...]] = ()

@@ -24,7 +24,8 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import limits_of_tip, require_trajectory_options, trajectory_rows
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.infeasibility.proof import PROVED
 from evenroad.io import plan_record
 from evenroad.loading.find import find_robot
 from evenroad.planning.problem import Problem, Wanted
@@ -113,13 +114,23 @@ def _require_certifiable(plan: PlanArm, inputs: Iterable[Path]) -> None:
 
 
 def _certified(plan: PlanArm, result: PlanResult) -> list[tuple[str, str]]:
-    """Write the certificate of a path, if there is one and it is wanted; return its row for the table."""
-    if plan.certificate is None or not result.solved or result.path is None:
+    """Write the certificate of a path, or that there is none, if it is wanted; return its row for the table."""
+    apart = result.message.startswith(PROVED)
+    if plan.certificate is None or not (result.solved or apart):
         return []
     # Imported late: most plans are written without one.
     from evenroad.certificates.certify import certify
+    from evenroad.certificates.no_path import certify_no_path
 
-    certify(result.world, result.path, plan.sources(plan.robot, plan.world, plan.embed), plan.certificate)
+    sources = plan.sources(plan.robot, plan.world, plan.embed)
+    if result.path is not None:
+        certify(result.world, result.path, sources, plan.certificate)
+    else:
+        try:
+            certify_no_path(result.world, result.start, result.goals, sources, plan.certificate)
+        except NotAvailable as reason:
+            # A proof may use more than a certificate: the answer of the plan stands.
+            return [("certificate", str(reason))]
     return [("certificate", f"{plan.certificate}, which evenroad-verify checks")]
 
 

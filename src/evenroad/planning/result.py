@@ -425,7 +425,9 @@ class PlanResult:
         embed: bool = False,
         **packages: _File,
     ) -> None:
-        """Write a certificate: a proof that the path is free, which ``evenroad-verify`` checks without evenroad.
+        """Write a certificate: a proof that the path is free, or that there is none.
+
+        ``evenroad-verify`` checks it without evenroad.
 
         Parameters
         ----------
@@ -440,7 +442,7 @@ class PlanResult:
         Raises
         ------
         NotAvailable, InvalidValue
-            If certificates do not cover the plan, or if there is no path or no proof.
+            If certificates do not cover the plan, or if there is no proof.
 
         Examples
         --------
@@ -452,8 +454,14 @@ class PlanResult:
         """
         from evenroad.certificates.certify import Sources, certify
 
+        sources = Sources.named(robot, scene, srdf, embed=embed, packages=packages)
+        if self.path is None and self.status is Status.NOT_CONNECTED and self.world is not None:
+            from evenroad.certificates.no_path import certify_no_path
+
+            certify_no_path(self.world, self.start, self.goals, sources, file)
+            return
         path, world = self._required("certified")
-        certify(world, path, Sources.named(robot, scene, srdf, embed=embed, packages=packages), file)
+        certify(world, path, sources, file)
 
     def _required(self, how: str) -> tuple[Floats, World]:
         """Return path and world, or raise InvalidValue that names the missing one."""

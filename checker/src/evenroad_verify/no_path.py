@@ -1,0 +1,204 @@
+"""Certificates of no path: each path from the start to a goal meets a cell that is blocked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evenroad_verify.cells import Cells, Ranges, cells_of, reached
+from evenroad_verify.certificate import FARTHEST, Certificate, count_of, head_of, read_file, tables_of
+from evenroad_verify.claim import BEYOND, Inputs, bodies_of, may_touch, require_limits, silent
+from evenroad_verify.errors import Floats, Ints, demand
+from evenroad_verify.frames import Frames, frames_of
+from evenroad_verify.overlaps import (
+    LEAST,
+    Body,
+    Places,
+    Solid,
+    Spot,
+    between,
+    is_ball_inside,
+    require_blocked,
+    solid_of,
+)
+from evenroad_verify.proof import ROUNDING
+
+MAGIC = b"evenroad certificate of no path 1\n"
+_ANY = 1000.0
+"""A range of more than this is none [rad or m]."""
+
+
+@dataclass(frozen=True)
+class NoPath:
+    """What a file claims.
+
+    `terminals` holds joints, distances to keep, and start and goals as motions from the start.  `balls`, (b, 5), are
+    the number of a body, a centre in its frame and a radius; `witnesses`, (w, 2), the numbers of a ball and of a solid.
+    `parts` are columns and the answers of their cells.
+    """
+
+    terminals: Certificate
+    balls: Floats
+    witnesses: Ints
+    parts: tuple[tuple[Ints, Ints], ...]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """An accepted certificate of no path: pairs of bodies that block cells, joints, and how many cells are blocked."""
+
+    certificate: NoPath
+    pairs: tuple[tuple[str, str], ...]
+    joints: tuple[str, ...]
+    blocked: int
+    least: float
+    silent: tuple[str, ...]
+
+
+def read_no_path(data: bytes) -> NoPath:
+    """Return the certificate that some bytes are; Refused for any others."""
+    return read_file(data, MAGIC, _no_path)
+
+
+def _no_path(said: dict[str, list[str]], body: bytes) -> NoPath:
+    once = ("goals", "balls", "witnesses")
+    head = head_of(said, once, ("cells",))
+    dim = len(head["joints"])
+    goals, balls, witnesses = (count_of(said[key][0]) for key in once)
+    parts = [[count_of(word) for word in line.split(" ")] for line in said.get("cells", [])]
+    sizes = [8 * (1 + goals) * dim, 18 * balls, 4 * witnesses]
+    for count, *columns in parts:
+        demand(columns and len(set(columns)) == len(columns), "cells are of no joint, or of one twice")
+        demand(max(columns) < dim, "cells are of a joint that is not named")
+        sizes.append(count * _bytes(len(columns), witnesses))
+    demand(goals > 0 and parts, "it has no goals, or no cells")
+    pieces, head["carried"] = tables_of(said, body, sizes)
+    terminals = np.frombuffer(pieces[0], "<f8").reshape(-1, dim)
+    demand(np.isfinite(terminals).all() and np.abs(terminals).max() <= FARTHEST, "an end is no number, or too large")
+    table = np.frombuffer(pieces[1], np.dtype([("body", "<u2"), ("ball", "<f4", 4)]))
+    ball = np.concatenate([table["body"][:, None], table["ball"]], axis=1, dtype=float)
+    sane = np.isfinite(ball).all() and (ball[:, 4] > 0.0).all() and not (np.abs(ball[:, 1:]) > FARTHEST).any()
+    demand(sane, "a ball is no number, or too large")
+    goal = terminals[1:]
+    start = np.broadcast_to(terminals[0], goal.shape)
+    curves = np.stack([start, 0.5 * (start + goal), goal], axis=1)
+    answers = [
+        (np.array(columns), np.frombuffer(piece, f"<u{_bytes(len(columns), witnesses)}").astype(np.int64))
+        for (_, *columns), piece in zip(parts, pieces[3:], strict=True)
+    ]
+    return NoPath(
+        Certificate(**head, curves=curves, answers=np.zeros(0, np.uint8), directions=np.zeros((0, 3))),
+        ball,
+        np.frombuffer(pieces[2], "<u2").reshape(-1, 2).astype(np.int64),
+        tuple(answers),
+    )
+
+
+def _bytes(columns: int, witnesses: int) -> int:
+    """Return how many bytes an answer takes."""
+    return 1 if 1 + columns + witnesses <= 256 else 2
+
+
+def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
+    """Return what a certificate of no path proves; Refused, with the reason, if it does not."""
+    read = read_no_path(data)
+    terminals = read.terminals
+    demand(terminals.inputs == inputs.digest, "robot, SRDF, scene or meshes are not the files that it was written for")
+    with np.errstate(all="ignore"):
+        frames = frames_of(inputs.robot, terminals)
+        shapes, place = bodies_of(inputs, frames)
+        demand(terminals.padding.keys() <= shapes.keys(), "a link is padded that has no shape")
+        require_limits(frames, inputs.scene, terminals)
+        bodies = [Body(name, place[name][0], some, False) for name, some in shapes.items()]
+        bodies += [Body(each.name, 0, list(each.shapes), True) for each in inputs.scene.obstacles]
+        table, names = _witnesses(read, inputs, bodies, may_touch(inputs.robot, inputs.scene, shapes))
+        left, blocked, least = np.ones(len(terminals.curves), bool), 0, np.inf
+        for columns, answers in read.parts:
+            cells = cells_of(_ranges(frames, inputs, terminals, columns), answers)
+            left &= _in_reach(cells, terminals)
+            witness, shut = cells.answer - 1 - len(columns), cells.answer > len(columns)
+            demand((witness < len(table)).all(), "an unknown witness")
+            for number in np.unique(witness[shut]):
+                (ball, (frame, _), _) = table[number]
+                moving = frames.column[between(frames, ball.frame, frame)]
+                demand(np.isin(moving, columns).all(), "other joints move a witness")
+            middles, half = cells.middles()
+            places = Places(frames, cells.ranges, middles[shut], half[shut], len(terminals.joints))
+            _require_precise(frames, inputs, bodies, cells)
+            least = min(least, require_blocked(places, frames, witness[shut], table))
+            blocked += int(shut.sum())
+        demand(not left.any(), f"a goal is not shown to be out of reach: number {int(left.argmax())}")
+    used = tuple(dict.fromkeys(terminals.joints[column] for columns, _ in read.parts for column in columns))
+    return Shown(read, names, used, blocked, least, silent(inputs.robot, inputs.scene, shapes, place, terminals))
+
+
+def _in_reach(cells: Cells, terminals: Certificate) -> list[bool]:
+    """Return which goals may be reached, by the cells alone; Refused where the start is in no open cell."""
+    start = cells.holding(terminals.curves[0, 0]) & (cells.answer == 0)
+    demand(start.any(), "the start is not in an open cell")
+    inside = reached(cells, start)
+    return [bool((cells.holding(goal) & inside).any()) for goal in terminals.curves[:, 2]]
+
+
+def _ranges(frames: Frames, inputs: Inputs, terminals: Certificate, columns: Ints) -> Ranges:
+    """Return the ranges of columns: as far as the joints may go, or one turn."""
+    limits = {joint.name: (joint.lower, joint.upper) for joint in frames.joints}
+    low, high = np.full(len(columns), -np.inf), np.full(len(columns), np.inf)
+    for i, column in enumerate(columns):
+        name = terminals.joints[column]
+        for least, most in (limits[name], inputs.scene.limits.get(name, (-np.inf, np.inf))):
+            if most - least <= _ANY:
+                low[i], high[i] = max(low[i], least - BEYOND), min(high[i], most + BEYOND)
+        turns = frames.factor[frames.column == column]
+        slides = frames.slides[frames.column == column].any()
+        whole = not slides and (turns == np.rint(turns)).all()
+        demand(np.isfinite(low[i]) or whole, f"{name} has no limits, and does not turn endlessly alone")
+        demand(low[i] < high[i], f"{name} has no range")
+    endless = np.isinf(low)
+    return Ranges(columns, np.where(endless, -np.pi, low), np.where(endless, np.pi, high), endless)
+
+
+def _witnesses(
+    read: NoPath, inputs: Inputs, bodies: list[Body], touching: set[frozenset[str]]
+) -> tuple[list[tuple[Spot, tuple[int, Solid | Spot], float]], tuple[tuple[str, str], ...]]:
+    """Return balls, solids and what to keep between them, and the names of bodies; Refused where a pair may touch."""
+    spots = []
+    for number, *centre, radius in read.balls.tolist():
+        demand(number < len(bodies), "a ball is in an unknown body")
+        body = bodies[int(number)]
+        demand(is_ball_inside(body, np.array(centre), radius), f"a ball is not inside of {body.name}")
+        spots.append(Spot(body.frame, np.array(centre), radius))
+    solids: list[tuple[int, Solid | Spot | None]] = [
+        (i, solid_of(shape)) for i, body in enumerate(bodies) for shape in body.shapes if not shape.surface
+    ]
+    solids += [(int(body), spot) for (body, *_), spot in zip(read.balls.tolist(), spots, strict=True)]
+    table, names = [], dict[tuple[str, str], None]()
+    for first, second in read.witnesses.tolist():
+        demand(first < len(spots) and second < len(solids), "an unknown ball or solid")
+        number, solid = solids[second]
+        one, two = bodies[int(read.balls[first, 0])], bodies[number]
+        if solid is None:
+            demand(False, f"{two.name} is no solid")
+            continue
+        demand(one.frame != two.frame, f"nothing moves {one.name} and {two.name} on each other")
+        keep = 0.0
+        if one.is_obstacle or two.is_obstacle:
+            obstacle, link = (one.name, two.name) if one.is_obstacle else (two.name, one.name)
+            demand((obstacle, link) not in inputs.scene.allowed, f"{link} may touch {obstacle}")
+            keep = read.terminals.clearance + read.terminals.padding.get(link, 0.0)
+        else:
+            demand(frozenset((one.name, two.name)) not in touching, f"{one.name} may touch {two.name}")
+        table.append((spots[first], (two.frame, solid), keep))
+        names[one.name, two.name] = None
+    return table, tuple(names)
+
+
+def _require_precise(frames: Frames, inputs: Inputs, bodies: list[Body], cells: Cells) -> None:
+    """Raise Refused where rounding may exceed what a witness has to spare."""
+    terminals = np.zeros((1, 3, 1 + int(frames.column.max())))
+    terminals[0, 0, cells.ranges.columns], terminals[0, 1, cells.ranges.columns] = cells.ranges.low, cells.ranges.high
+    _, out = frames.far(terminals)
+    reach = max(out.max() + np.linalg.norm(shape.points, axis=1).max() for body in bodies for shape in body.shapes)
+    largest = 1.0 + np.abs(terminals).max() * max(1.0, float(np.abs(frames.factor).max()))
+    demand(ROUNDING * inputs.robot.depth * reach * largest < LEAST, "the robot is too large for double precision")

@@ -1,0 +1,79 @@
+"""The smallest part of a tree of cells that still keeps start and goals apart, as answers of a certificate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats, Ints
+from evenroad.certificates.cells import Tree
+
+OTHER, INSIDE, WALL = 0, 1, 2
+
+
+HALVED, LEFT_OPEN = -1, -1000
+"""Answers: HALVED - k halves a cell along column k; all others are numbers of pairs."""
+
+
+def pruned(tree: Tree, start: Floats, goals: Floats) -> Ints:
+    """Return the answers of a tree that keeps a start, (dim,), and some goals, (g, dim), apart."""
+    terminals = tree.ranges.units(np.vstack([start, goals]))
+    leaves = tree.leaves()
+    label = _components(tree, leaves)
+    at = tree.find(terminals, leaves)
+    sides = [{int(label[at[0]])}, {int(label[each]) for each in at[1:] if each >= 0}]
+    found = [_answers(tree, leaves, np.isin(label[leaves], sorted(side))) for side in sides if side]
+    return min(found, key=len)
+
+
+def _components(tree: Tree, leaves: Ints) -> Ints:
+    """Return a number for each cell, the same for open ones that are joined."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    one, two = (np.concatenate(each) for each in zip(*tree.neighbours(leaves, leaves), strict=True))
+    graph = coo_matrix((np.ones(len(one)), (one, two)), shape=(len(tree.depth),) * 2)
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def _answers(tree: Tree, leaves: Ints, inside: Bools) -> Ints:
+    """Return the answers that keep the cells of one side of a wall."""
+    shut = np.flatnonzero(tree.pair >= 0)
+    of = np.full(len(tree.depth), OTHER)
+    of[leaves[inside]] = INSIDE
+    within = leaves[inside]
+    for _, beside in (*tree.neighbours(within, shut), *(both[::-1] for both in tree.neighbours(shut, within))):
+        of[beside] = WALL
+    pair = _few(tree, np.flatnonzero(of == WALL))
+    halved = np.flatnonzero(tree.child >= 0)
+    kept = np.zeros(len(of), dtype=np.bool_)
+    # Children have larger numbers than their parents: deeper cells first.
+    for depth in np.unique(tree.depth[halved])[::-1].tolist():
+        here = halved[tree.depth[halved] == depth]
+        first, second = of[tree.child[here]], of[tree.child[here] + 1]
+        whole = (first == second) & (first != WALL) & ~kept[tree.child[here]] & ~kept[tree.child[here] + 1]
+        of[here] = np.where(whole, first, WALL)
+        kept[here] = ~whole
+    answers, cells = [], np.zeros(1, dtype=np.int64)
+    along = np.diff(tree.shifts, axis=0, append=tree.shifts[-1:]).argmax(axis=1)
+    while len(cells):
+        shut_here = np.where(of[cells] == WALL, pair[cells], LEFT_OPEN)
+        answers.append(np.where(kept[cells], HALVED - along[tree.depth[cells]], shut_here))
+        inner = cells[kept[cells]]
+        cells = np.stack([tree.child[inner], tree.child[inner] + 1], axis=1).ravel()
+    return np.concatenate(answers)
+
+
+def _few(tree: Tree, cells: Ints) -> Ints:
+    """Return a pair for each of some blocked cells, few different ones: again and again the one that blocks most."""
+    cell, pair = (np.concatenate(each) for each in zip(*tree.valid, strict=True))
+    chosen = np.full(len(tree.depth), -1, dtype=np.int64)
+    wanted = np.zeros(len(tree.depth), dtype=np.bool_)
+    wanted[cells] = True
+    while True:
+        some = wanted[cell]
+        cell, pair = cell[some], pair[some]
+        if not len(cell):
+            return chosen
+        best = int(np.bincount(pair).argmax())
+        rows = cell[pair == best]
+        chosen[rows], wanted[rows] = best, False

@@ -1,0 +1,221 @@
+"""Certificates that there is no path: what they claim is true, and what is changed for the worse is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.errors import NotAvailable
+from evenroad_verify.command import main
+from evenroad_verify.no_path import verify_no_path
+from tests.certificates.no_path import Parts, Place, accepts, at, flat_arm, posts
+
+
+@pytest.fixture(scope="module")
+def caught(tmp_path_factory):
+    """The bar stands between two posts; the goal is beyond one of them."""
+    place = Place(tmp_path_factory.mktemp("caught"), posts(at(0.7, 0.3), at(-0.7, 0.3), at(0.2, 0.86)))
+    return place, place.certificate([0.0, 0.3], [[2.0, 0.3]])
+
+
+def random_place(folder, seed):
+    rng = np.random.default_rng(seed)
+    angles, distances = rng.uniform(-3.0, 3.0, 6), np.append(rng.uniform(0.2, 1.0, 5), 0.3)
+    return Place(folder / str(seed), posts(*zip(*at(angles, distances), strict=True)))
+
+
+def test_a_plan_that_is_proved_to_have_no_path_is_certified(caught, tmp_path, capsys):
+    place, _ = caught
+    result = er.plan(place.world, [0.0, 0.3], [2.0, 0.3], seconds=2.0)
+    assert result.message.startswith("proved")
+    file = tmp_path / "none.cert"
+    result.certify(file, robot=place.sources.robot, scene=place.sources.scene)
+    words = [str(file), str(place.sources.robot), str(place.sources.scene)]
+    assert main(words) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("PROVED: no path leads from the start to the goal: each one touches something")
+    assert "whatever other joints than these do: turn" in said
+    assert "upper - post0" in said
+    assert main([*words, "--path", str(file)]) == 1
+    assert file.stat().st_size < 500
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_certified_a_finer_flood_confirms(seed, tmp_path):
+    place = random_place(tmp_path, seed)
+    ends = place.free(np.random.default_rng(seed), 6)
+    shown, apart = 0, 0
+    for i in range(1, 6):
+        joined = place.joined(ends[0], ends[i])
+        apart += not joined
+        try:
+            data = place.certificate(ends[0], ends[i : i + 1])
+        except NotAvailable:
+            continue
+        assert not joined
+        assert accepts(data, place.inputs)
+        shown += 1
+    # The flood takes a slit for a wall.
+    assert shown >= apart - 1
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_every_state_of_a_blocked_cell_is_in_collision(seed, tmp_path):
+    place, rng = random_place(tmp_path, seed), np.random.default_rng(seed)
+    for start, goal in zip(place.free(rng, 5), place.free(rng, 5)[::-1], strict=True):
+        if place.joined(start, goal):
+            continue
+        parts = Parts.of(place.certificate(start, [goal]))
+        for answers, line in zip(
+            parts.answers, [each for each in parts.lines if each.startswith("cells")], strict=True
+        ):
+            columns = list(map(int, line.split(" ")[2:]))
+            # A walk through the tree that shares nothing with the checker's.
+            waiting = [(np.full(len(columns), -3.00001), np.full(len(columns), 3.00001))]
+            for answer in answers.tolist():
+                low, high = waiting.pop(0)
+                if 1 <= answer <= len(columns):
+                    middle = 0.5 * (low + high)[answer - 1]
+                    for side in (0, 1):
+                        both = [low.copy(), high.copy()]
+                        both[1 - side][answer - 1] = middle
+                        waiting.append(tuple(both))
+                elif answer > len(columns):
+                    q = rng.uniform(-3.0, 3.0, (6, 2))
+                    q[:, columns] = low + (high - low) * rng.choice([0.0, 1.0, rng.random()], (6, len(columns)))
+                    assert not place.world.valid(np.clip(q, -3.0, 3.0)).any()
+            assert not waiting
+
+
+def changed(parts, kind, rng):
+    """Return a forgery: something changed at random."""
+    ends, balls, witnesses = parts.ends.copy(), parts.balls.copy(), parts.witnesses.copy()
+    answers = parts.answers[0].copy()
+    row = rng.integers(len(balls))
+    if kind == "start":
+        ends[0] = rng.uniform(-3.0, 3.0, 2)
+    elif kind == "goal":
+        ends[1] = rng.uniform(-3.0, 3.0, 2)
+    elif kind == "ball moved":
+        balls["ball"][row, :3] += rng.normal(size=3) * 0.05
+    elif kind == "ball grown":
+        balls["ball"][row, 3] *= rng.uniform(1.0, 1.5)
+    elif kind == "ball of another body":
+        balls["body"][row] = rng.integers(8)
+    elif kind == "witness":
+        witnesses[rng.integers(len(witnesses)), rng.integers(2)] = rng.integers(8)
+    elif kind == "answer":
+        answers[rng.integers(len(answers))] = rng.integers(6)
+    elif kind == "cell opened":
+        answers[rng.choice(np.flatnonzero(answers))] = 0
+    return replace(parts, ends=ends, balls=balls, witnesses=witnesses, answers=(answers, *parts.answers[1:]))
+
+
+KINDS = (
+    "start",
+    "goal",
+    "ball moved",
+    "ball grown",
+    "ball of another body",
+    "witness",
+    "answer",
+    "cell opened",
+)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_forgery_that_is_accepted_is_true(kind, caught):
+    place, data = caught
+    rng, parts, accepted = np.random.default_rng(len(kind)), Parts.of(data), 0
+    for _ in range(25):
+        forged = changed(parts, kind, rng)
+        if not accepts(forged.data, place.inputs):
+            continue
+        accepted += 1
+        assert not place.joined(*forged.ends)
+    # Whatever still holds is accepted; nothing of what a cell needs is left out.
+    assert accepted < 25
+    assert kind not in ("start", "goal") or accepted > 3
+
+
+SCENES = {
+    "shrunk": ("post0: {shape: cylinder, radius: 0.03", "post0: {shape: cylinder, radius: 0.003"),
+    "gone": ("  post0: ", "  #post0: "),
+    "moved": ("xyz: [0.2294", "xyz: [0.4294"),
+    "allowed": ("obstacles:", "allowed: {post0: [upper, fore]}\nobstacles:"),
+}
+
+
+@pytest.mark.parametrize("change", SCENES)
+def test_a_scene_that_has_a_path_refuses_even_with_a_new_digest(change, caught, tmp_path):
+    place, data = caught
+    old, new = SCENES[change]
+    assert old in place.scene
+    freer = Place(tmp_path / "freer", place.scene.replace(old, new))
+    assert not accepts(data, freer.inputs)
+    assert not accepts(Parts.of(data).saying("inputs", freer.inputs.digest).data, freer.inputs)
+    assert accepts(Parts.of(data).saying("inputs", place.inputs.digest).data, place.inputs)
+
+
+def test_wider_limits_need_another_proof(caught, tmp_path):
+    place, data = caught
+    wide = Place(tmp_path / "wide", place.scene, flat_arm().replace('lower="-3" upper="3"', 'lower="-6" upper="6"'))
+    assert not accepts(Parts.of(data).saying("inputs", wide.inputs.digest).data, wide.inputs)
+    with pytest.raises(NotAvailable):
+        wide.certificate([0.0, 0.3], [[2.0 - 2.0 * np.pi, 0.3], [0.1, 0.3]])
+    assert accepts(wide.certificate([0.0, 0.3], [[2.0, 0.3], [2.0 - 2.0 * np.pi, 0.3]]), wide.inputs)
+
+
+def test_a_joint_that_turns_endlessly_needs_walls_on_both_sides(tmp_path):
+    endless = flat_arm("continuous")
+    one, two = (
+        Place(tmp_path / name, posts(*places), endless)
+        for name, places in {"one": [at(1.0, 0.3)], "two": [at(1.0, 0.3), at(-3.1, 0.3)]}.items()
+    )
+    with pytest.raises(NotAvailable):
+        one.certificate([0.0, 0.3], [[2.0, 0.3]])
+    data = two.certificate([0.0, 0.3], [[2.0, 0.3]])
+    assert accepts(data, two.inputs)
+    parts = Parts.of(data)
+    for turn in (2.0 * np.pi, -4.0 * np.pi):
+        parts.ends[1, 0] = 2.0 + turn
+        assert accepts(parts.data, two.inputs)
+        parts.ends[1, 0] = 0.5 + turn
+        assert not accepts(parts.data, two.inputs)
+
+
+def test_clearance_and_padding_count_for_obstacles(tmp_path):
+    """The ball may pass a post with 0.06 m to spare; two other posts hold the bar."""
+    scene = posts((0.8, 0.25), (0.8, -0.25), (0.2, 0.15), (0.2, -0.15))
+    place = Place(tmp_path / "near", scene, clearance=0.08)
+    data = place.certificate([0.0, 0.0], [[0.0, 2.0]])
+    assert accepts(data, place.inputs)
+    assert accepts(
+        data.replace(b"clearance 0.08", b"clearance 0.01\npadding 0.07 fore\npadding 0.07 upper"), place.inputs
+    )
+    assert not accepts(data.replace(b"clearance 0.08", b"clearance 0.01"), place.inputs)
+    with pytest.raises(NotAvailable):
+        Place(tmp_path / "far", scene, clearance=0.01).certificate([0.0, 0.0], [[0.0, 2.0]])
+
+
+def test_flipped_bits_never_stop_the_checker(caught):
+    place, data = caught
+    rng, refused = np.random.default_rng(0), 0
+    for _ in range(150):
+        other = bytearray(data)
+        for at_byte in rng.integers(len(data), size=rng.integers(1, 4)):
+            other[at_byte] ^= 1 << rng.integers(8)
+        if accepts(bytes(other), place.inputs):
+            assert not place.joined(*Parts.of(bytes(other)).ends)
+        else:
+            refused += 1
+    assert refused > 100
+
+
+def test_a_file_says_what_it_shows(caught):
+    place, data = caught
+    shown = verify_no_path(data, place.inputs)
+    assert shown.joints == ("turn",)
+    assert shown.least > 1e-9
+    assert {first for first, _ in shown.pairs} == {"upper"}
