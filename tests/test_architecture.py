@@ -31,11 +31,12 @@ MAY_IMPORT = {
     "spaces": BASE | {"space"},
     "geometry": BASE,
     "world": BASE | {"space", "geometry"},
+    "driving": BASE | {"space", "world"},
     **{part: BASE | {*VALUES, *OF_ARMS[:i]} for i, part in enumerate(OF_ARMS)},
     "robot": BASE | {"geometry", *OF_ARMS},
     "constraints": BASE | {*VALUES, *OF_ARMS},
     "roadmap": BASE | {"points", "space", "world"},
-    "planning": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap"},
+    "planning": BASE | {*VALUES, *OF_ARMS, "driving", "constraints", "roadmap"},
     "trajectory": BASE | {"space", "geometry", "world", *OF_ARMS, "constraints"},
     "certificates": BASE | {*VALUES, *OF_ARMS, "trajectory"},
     "task": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory"},
@@ -43,7 +44,7 @@ MAY_IMPORT = {
     "qmc": BASE | {"points"},
     "io": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning"},
     "testing": BASE | {"space", "world"},
-    "viz": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning"},
+    "viz": BASE | {*VALUES, *OF_ARMS, "driving", "constraints", "roadmap", "planning"},
     "adapters": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
     "cli": BASE
     | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory", "task", "datasets", "io", "viz"}
@@ -77,8 +78,12 @@ UPWARD = {
     ("task.task", "Task.plan"): {"task.solve"},
     ("trajectory.trajectory", "Trajectory.save"): {"trajectory.formats"},
     ("world.gridmap.gridmap", "GridMap.plot"): {"viz.result"},
-    ("world.gridmap.gridmap", "GridMap.world"): {"world.gridmap.disk_world"},
-    ("world.gridmap.gridmap", TYPES): {"world.gridmap.disk_world"},
+    ("world.gridmap.gridmap", "GridMap.world"): {
+        *("driving.car_world", "driving.footprint", "world.gridmap.disk_world"),
+    },
+    ("world.gridmap.gridmap", TYPES): {
+        *("driving.car_world", "driving.footprint", "world.gridmap.disk_world"),
+    },
 }
 """Module and method -> modules above it that the method imports: values have methods for what users type most."""
 

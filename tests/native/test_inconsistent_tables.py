@@ -273,7 +273,7 @@ def place_of(name):
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """With what the package makes a robot, surfaces and a scene, answers a query, improves a path, makes a disk."""
+    """With what the package makes a robot, surfaces, a scene, a disk and a car, answers a query, improves a path."""
     calls = defaultdict(list)
     with pytest.MonkeyPatch.context() as patch:
         for name in ("Robot", "Surface", "Scene"):
@@ -282,6 +282,8 @@ def recorded(tmp_path_factory):
             patch.setattr(_native.planning, name, recording(f"planning.{name}", calls))
         patch.setattr("evenroad.planning.drivers.Drivers", recording("planning.Drivers", calls))
         patch.setattr("evenroad.world.gridmap.disk_world.Disk", recording("world.Disk", calls))
+        for name, of in (("Footprint", "footprint.Native"), ("Steering", "car_space."), ("Vehicle", "car_world.")):
+            patch.setattr(f"evenroad.driving.{of}{name}", recording(f"drive.{name}", calls))
         patch.setattr("evenroad.collision.arm_world.Checker", recording("robot.Checker", calls))
         patch.setattr("evenroad.planning.connectors.answer", recording("planning.answer", calls))
         patch.setattr("evenroad.planning.many.ManyQueries", recording("planning.ManyQueries", calls))
@@ -300,6 +302,7 @@ def recorded(tmp_path_factory):
         plan_many(box_world(), [START] * 3, [START, START + 0.1, GOAL], limits={"motions": 50})
         for resolution in (0.1, 0.5):
             GridMap(rng.random((20, 30)) < 0.1, resolution=resolution).world(0.4).valid(np.zeros((1, 2)))
+        GridMap(rng.random((20, 30)) < 0.1).world(footprint=[(-1, -1), (2, -1), (0, 2), (-1, 1)], turning_radius=2.0)
     return dict(calls)
 
 

@@ -27,6 +27,7 @@ from evenroad.scenes.scan import allowed_near_ends, open_everywhere, scene_seen_
 from evenroad.scenes.scene import Scene
 from evenroad.scenes.scene_file import load_scene
 from evenroad.scenes.states import as_configuration, at_states
+from evenroad.space.protocol import is_directed
 from evenroad.world import World
 
 if TYPE_CHECKING:
@@ -88,6 +89,8 @@ def read_problem(
             "world must be a World, a GridMap with radius=, or a Scene with robot=; or the name or file of one, got"
             f" {shown(world)}"
         )
+    if is_directed(world.space):
+        raise InvalidValue(f"no planner drives only forwards yet: reverse must be True to plan, got {shown(world)}")
     return Problem(world, *as_start_and_goals(start, goal, world.space), **wanted)
 
 

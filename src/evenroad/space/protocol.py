@@ -38,6 +38,11 @@ class Space(Protocol):
         """The period of each coordinate, (dim,), infinite if it does not repeat; None if not known."""
         return None if self.flat is None else self.flat.period
 
+    @property
+    def is_directed(self) -> bool:
+        """Whether the motion from `b` to `a` may be another one than that from `a` to `b`, reversed."""
+        return False
+
     def from_cube(self, u: Floats) -> Floats:
         """Map points of the unit cube to configurations, preserving measure.
 
@@ -177,6 +182,11 @@ def period_of(space: Space) -> Floats | None:
     flat = getattr(space, "flat", None)
     own: Floats | None = getattr(space, "period", None) if flat is None else flat.period
     return own
+
+
+def is_directed(space: Space) -> bool:
+    """Return whether motions of a space differ from their reverse, also of one that does not inherit from Space."""
+    return bool(getattr(space, "is_directed", False))
 
 
 def wrapped(space: Space, q: Floats) -> Floats:

@@ -13,8 +13,12 @@ class World(Protocol):
     """Validity of configurations and of motions, always for a batch.
 
     Implementations never write to their arguments, give every row the result that it would get alone, and raise
-    InvalidValue for a wrong shape or an entry that is not finite.  A motion is the shortest interpolation of the space.
-    It is free only if both endpoints are, and its reverse has the same result.
+    InvalidValue for a wrong shape or an entry that is not finite.
+
+    A motion is the curve of the space from one configuration to another: `space.distance` is its length, and
+    `space.interpolate` returns the points on it.  It is free only if both endpoints are.  In most spaces a motion is a
+    straight line, and its reverse has the same result.  A car drives curves, and the waypoints of its path are joined
+    by curves, too.  Where a space `is_directed`, the motion back is a different one.
 
     A world may have a text `proof`, the kind of proof of a motion's check: ``exact`` (no gap, up to rounding),
     ``certified`` (no gap) or ``resolution`` (states close together), which is the default.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from evenroad.world.gridmap.frame import MapFrame
 if TYPE_CHECKING:
     from PIL import Image
 
+    from evenroad.driving.car_world import CarWorld
+    from evenroad.driving.footprint import Footprint, FootprintLike
     from evenroad.world.gridmap.disk_world import DiskWorld
 
 
@@ -168,26 +170,56 @@ class GridMap:
         column, row = self.frame.to_pixels(as_batch("q", q, 2)).T
         return np.asarray((column >= 0.0) & (column <= self.frame.cols) & (row >= 0.0) & (row <= self.frame.rows))
 
-    def world(self, radius: float, clearance: float = 0.0) -> DiskWorld:
-        """Return the world of a disk robot on the map.
-
-        For a robot with another footprint, use the radius of a disk around it.
+    @overload
+    def world(self, radius: float, clearance: float = ...) -> DiskWorld: ...
+    @overload
+    def world(
+        self,
+        *,
+        clearance: float = ...,
+        footprint: Footprint | FootprintLike,
+        turning_radius: float = ...,
+        reverse: bool = ...,
+        holonomic: bool = ...,
+    ) -> CarWorld: ...
+    def world(
+        self,
+        radius: float | None = None,
+        clearance: float = 0.0,
+        *,
+        footprint: Footprint | FootprintLike | None = None,
+        turning_radius: float = 0.0,
+        reverse: bool = True,
+        holonomic: bool = False,
+    ) -> DiskWorld | CarWorld:
+        """Return the world of a robot on the map: of a disk, or of a car with a footprint.
 
         Parameters
         ----------
         radius : float
             Radius of the disk, > 0, in map units: metres for a ROS map, pixels for a bare image.
         clearance : float
-            Least distance from every obstacle, >= 0, in map units.
+            Least distance from every obstacle, >= 0, in map units.  Around corners of a footprint it is up to 2 % more.
+        footprint : Footprint or array_like, shape (n, 2), optional
+            In place of `radius`: corners of a polygon around the robot's reference point, x forwards, y to the left,
+            or a list of several polygons.
+        turning_radius : float
+            Of a footprint: least radius of a turn, >= 0, in map units.  Default: 0, which turns on the spot.
+        reverse : bool
+            Of a footprint: whether it may drive backwards.  Default: True.
+        holonomic : bool
+            Of a footprint: whether it moves in every direction, and turns while it does.  Default: False.
 
         Returns
         -------
-        DiskWorld
+        DiskWorld or CarWorld
+            Configurations are points (x, y) of a disk, and poses (x, y, angle) of a footprint.
 
         Raises
         ------
         InvalidValue
-            If one of the two is no such number.
+            If a number is not such a one, a footprint crosses itself or is larger than the map, or both a radius and a
+            footprint are given.
 
         Examples
         --------
@@ -196,7 +228,20 @@ class GridMap:
         >>> grid = er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
         >>> grid.world(radius=0.25)
         DiskWorld(radius 0.25, 20 x 30 cells)
+        >>> box = [(-0.3, -0.2), (0.3, -0.2), (0.3, 0.2), (-0.3, 0.2)]
+        >>> car = grid.world(footprint=box, turning_radius=0.5)
+        >>> car.valid([(0.3, 1, 0), (0.2, 1, 0)]).tolist()
+        [True, False]
         """
+        if footprint is not None:
+            if radius is not None:
+                raise InvalidValue("a robot is a disk, with radius=, or has a footprint=; give one of the two")
+            from evenroad.driving.car_world import CarWorld
+            from evenroad.driving.footprint import as_footprint
+
+            return CarWorld(self, as_footprint(footprint), turning_radius, reverse, holonomic, clearance)
+        if radius is None or turning_radius != 0.0 or not reverse or holonomic:
+            raise InvalidValue("a map goes with radius=, that of a disk in map units, or footprint=, that of a car")
         own = require_positive("radius", radius)
         extra = require_positive("clearance", clearance, or_zero=True)
         from evenroad.world.gridmap.disk_world import DiskWorld

@@ -34,6 +34,7 @@ NB_MODULE(EVENROAD_MODULE, module) {
   nb::register_exception_translator(translate);
   module.attr("VARIANT") = EVENROAD_VARIANT;
   evenroad::bind::add_certificates(module);
+  evenroad::bind::add_drive(module);
   evenroad::bind::add_picture(module);
   evenroad::bind::add_planning(module);
   evenroad::bind::add_points(module);

@@ -43,6 +43,14 @@ class Occupancy {
     return shift == 0 ? word[0] : word[0] >> shift | word[1] << (64 - shift);
   }
 
+  /// Return whether a cell of a row is occupied, from a column of the map to another one, both included.
+  bool any(std::int64_t row, std::int64_t first, std::int64_t last) const {
+    for (; last - first >= 64; first += 64) {
+      if (window(row, first) != 0) return true;
+    }
+    return window(row, first) << (63 - (last - first)) != 0;
+  }
+
   /// Return how many columns to the left of one of the map the nearest occupied cell is, 0 in one; more than `most`
   /// where it is farther.
   std::int64_t to_left(std::int64_t row, std::int64_t column, std::int64_t most) const {

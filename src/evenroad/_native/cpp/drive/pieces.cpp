@@ -1,0 +1,62 @@
+#include "drive/pieces.hpp"
+
+#include <cmath>
+
+namespace evenroad::drive {
+
+namespace {
+
+/// A shorter piece is none, as far as a change of direction is concerned [radians of a turn].
+constexpr double NO_LENGTH = 1e-9;
+
+}  // namespace
+
+Motion Steering::motion(const Pose& from, const Piece& piece) const {
+  if (piece.side == 0) return Motion::straight(from, piece.length);
+  if (radius == 0.0) return Motion::on_the_spot(from, piece.side * piece.length / spot);
+  return Motion::arc(from, piece.side / radius, piece.length);
+}
+
+int cusps(const Steering& steering, std::span<const Piece> pieces) {
+  double before = 0.0;
+  int count = 0;
+  for (const Piece& piece : pieces) {
+    if (std::abs(piece.length) <= NO_LENGTH * steering.per_radian() || steering.is_on_the_spot(piece)) continue;
+    if (before * piece.length < 0.0) count++;
+    before = piece.length;
+  }
+  return count;
+}
+
+double cost(const Steering& steering, std::span<const Piece> pieces) {
+  double sum = steering.cusp * cusps(steering, pieces);
+  for (const Piece& piece : pieces) sum += std::abs(piece.length);
+  return sum;
+}
+
+Pose pose_after(const Steering& steering, Pose from, std::span<const Piece> pieces, double length) {
+  for (const Piece& piece : pieces) {
+    const double own = std::abs(piece.length);
+    if (length <= own) return steering.after(from, {piece.side, std::copysign(length, piece.length)});
+    from = steering.after(from, piece), length -= own;
+  }
+  return from;
+}
+
+// Poses first: they cost less than motions, and refuse most of what is blocked.
+bool are_free(Checks& checks, const Steering& steering, const Pose& from, std::span<const Piece> pieces) {
+  Pose at = from;
+  for (const Piece& piece : pieces) {
+    at = steering.after(at, piece);
+    if (!checks.is_free(at)) return false;
+  }
+  at = from;
+  for (const Piece& piece : pieces) {
+    const Motion motion = steering.motion(at, piece);
+    if (!checks.is_free_between(motion)) return false;
+    at = motion.at(1.0);
+  }
+  return true;
+}
+
+}  // namespace evenroad::drive

@@ -1,0 +1,240 @@
+"""CarWorld: a robot with a footprint on a map, with exact checks of poses and of whole motions."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._call import explains_calls
+from evenroad._checks import require_positive
+from evenroad._native.drive import Vehicle
+from evenroad.driving.car_space import CarSpace
+from evenroad.driving.footprint import Footprint
+from evenroad.errors import InvalidValue
+from evenroad.space import Circle, Product
+from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.world.gridmap.disk_world import DiskWorld
+from evenroad.world.gridmap.gridmap import GridMap
+from evenroad.world.one_or_many import OneOrMany, one_or_many
+from evenroad.world.protocol import Apart
+
+LARGEST_ANGLE = 4.0 * math.pi
+"""Largest angle of a start or goal [rad]: a larger one is probably in degrees."""
+_THIRD = 1.0 / 3.0
+"""Share of a footprint at either end in which a contact is at a corner or a side."""
+
+
+_LEAST_DEPTH = 1e-12
+"""Smallest overlap that is reported, in map units."""
+
+
+@explains_calls
+@dataclass(frozen=True, eq=False, repr=False)
+class CarWorld(OneOrMany):
+    """A footprint on one map: what `GridMap.world` returns with `footprint`.
+
+    Obstacles are the closed squares of the occupied cells and everything outside of the map; the footprint is open, so
+    touching is free.  A pose is (x, y, angle), an angle of 0 pointing along x.  A motion is the shortest curve of the
+    space: of Reeds and Shepp, or of Dubins without `reverse`; with a `turning_radius` of 0 the robot turns on the
+    spot.  All that the footprint sweeps is tested, without any step length.  With `holonomic` a robot moves straight in
+    any direction while it turns evenly.
+
+    InvalidValue for a footprint or a radius that is larger than the map, and for numbers that are none.
+    """
+
+    grid: GridMap
+    footprint: Footprint
+    turning_radius: float = 0.0
+    reverse: bool = True
+    holonomic: bool = False
+    clearance: float = 0.0
+    space: CarSpace | Product = field(init=False, repr=False)
+    vehicle: Vehicle = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        low, high = self.grid.bounds
+        longest = math.hypot(*(high - low))
+        radius = require_positive("turning_radius", self.turning_radius, or_zero=True)
+        clearance = require_positive("clearance", self.clearance, or_zero=True)
+        if radius > longest:
+            raise InvalidValue(
+                f"turning_radius must be at most the diagonal of the map, {longest:.6g}, got {radius:.6g}; both are in"
+                " map units"
+            )
+        width = 2.0 * self.footprint.inscribed[1]
+        if width > min(high - low) and width > min(self.grid.shape) * self.grid.resolution:
+            raise InvalidValue(
+                f"a footprint must fit on the map: a disk of diameter {width:.6g} lies in it, and the map is"
+                f" {self.grid.shape[1] * self.grid.resolution:.6g} by {self.grid.shape[0] * self.grid.resolution:.6g}"
+            )
+        if self.holonomic and (radius > 0.0 or not self.reverse):
+            raise InvalidValue("a holonomic robot moves in every direction: turning_radius and reverse are of a car")
+        space = (
+            Product((self.grid.space, Circle()), (1.0, self.footprint.reach), combine="l2")
+            if self.holonomic
+            else CarSpace(self.grid.space, radius, self.reverse, self.footprint.reach)
+        )
+        vehicle = _vehicle(self.grid, self.footprint.grown(clearance))
+        set_fields(self, turning_radius=radius, clearance=clearance, space=space, vehicle=vehicle)
+
+    def __reduce__(self) -> tuple[type[CarWorld], tuple[object, ...]]:
+        """Return what a copy is made of, here or in another process: it makes its own tables."""
+        made_of = (self.grid, self.footprint, self.turning_radius, self.reverse, self.holonomic, self.clearance)
+        return type(self), made_of
+
+    @property
+    def proof(self) -> str:
+        """What a check of a motion shows: ``exact``, or ``certified`` where a robot turns while it moves straight.
+
+        Such a motion is never called free if it is not, but may be refused where it is within 1 mm (or a thousandth of
+        a cell, if that is more) of an obstacle.
+        """
+        return "certified" if self.holonomic else "exact"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was read otherwise than the files of the map may mean it."""
+        return self.grid.notes
+
+    def __repr__(self) -> str:
+        rows, cols = self.grid.shape
+        drives = "holonomic" if self.holonomic else f"turning radius {self.turning_radius:g}"
+        forwards = "" if self.reverse else ", forwards only"
+        return f"CarWorld({self.footprint!r}, {drives}{forwards}, {rows} x {cols} cells)"
+
+    @one_or_many
+    def valid(self, q: Floats) -> Bools:
+        """Return whether the footprint is free at each pose, (n, 3) -> (n,); of one pose, (3,), a bool."""
+        return self.vehicle.poses_free(as_batch("q", q, 3))
+
+    @one_or_many
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """Return whether the footprint sweeps no obstacle from each row of `a` to that of `b`: two (m, 3) -> (m,)."""
+        first, second = as_batch_pair(a, b, 3)
+        if isinstance(self.space, CarSpace):
+            return self.vehicle.curves_free(self.space.steering, first, second)
+        return self.vehicle.lines_free(first, second)
+
+    def validate(self, path: Floats) -> Bools:
+        """Return which motions of a path, (p, 3), are free: (p - 1,)."""
+        poses = as_batch("path", path, 3)
+        return np.asarray(self.motion_valid(poses[:-1], poses[1:]))
+
+    @one_or_many
+    def distance(self, q: Floats) -> Floats:
+        """Return the distance between the footprint and the nearest obstacle, in map units; 0 where it touches one.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, 3) or (3,)
+            Poses; of one, the distance is a float.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            The footprint's own: the clearance of the world is part of it.
+        """
+        return self._bare.gaps(as_batch("q", q, 3))
+
+    @cached_property
+    def _bare(self) -> Vehicle:
+        """The footprint without its clearance."""
+        return self.vehicle if self.clearance == 0.0 else _vehicle(self.grid, self.footprint)
+
+    def explain(self, q: Floats) -> str:
+        """Return, in words, which part of the footprint touches which cell at a pose, (3,), that is not free."""
+        pose = as_batch("q", self._row(q)[np.newaxis], 3)[0]
+        near = f", or comes nearer than the clearance of {self.clearance:g}" if self.clearance > 0.0 else ""
+        corners = np.concatenate([_placed(pose[np.newaxis], each) for each in self._corners])
+        if not (inside := self.grid.contains(corners)).all():
+            return f"its {self._side(self._corners[np.argmin(inside)])} reaches beyond the map{near}"
+        contact = self.vehicle.contact(pose)
+        if contact is None:
+            return "nothing touches"
+        rows, cols = self.grid.shape
+        row = rows - 1 - contact.row if self.grid.frame.y_up else contact.row
+        row, column = min(max(row, 0), rows - 1), min(max(contact.column, 0), cols - 1)
+        cell = self.grid.frame.to_map(np.array([[column + 0.5, row + 0.5]]))[0]
+        kind = "unknown cell" if self.grid.unknown[row, column] else "cell"
+        by = f"by {max(contact.depth * self.grid.resolution, _LEAST_DEPTH):.3g}"
+        side = self._side(self._seen_from(pose, cell))
+        return f"its {side} touches the {kind} at ({cell[0]:.6g}, {cell[1]:.6g}) {by}{near}"
+
+    def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
+        """Return the proof that no path leads from a start, (3,), to any goal, (g, 3); None says nothing.
+
+        It is that of the largest disk inside of the footprint: where that cannot get through, the robot cannot.
+        """
+        poses = as_batch("start and goals", np.vstack([start, goals]), 3)
+        for centre in self._footprint.inscribed[0]:
+            points = _placed(poses, centre)
+            if self._inscribed.apart(points[0], points[1:], quickly=quickly) is not None:
+                message = (
+                    "proved: there is no path; the largest disk inside of the footprint, of radius"
+                    f" {self._inscribed.radius:.3g}, cannot get from start to goal either"
+                )
+                return Apart(message, proved=True)
+        return None
+
+    @cached_property
+    def _inscribed(self) -> DiskWorld:
+        return self.grid.world(self._footprint.inscribed[1])
+
+    @cached_property
+    def _footprint(self) -> Footprint:
+        """The footprint with its clearance."""
+        return self.footprint.grown(self.clearance)
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of map, frame, footprint and car: equal for worlds of equal results."""
+        car = (self.turning_radius, self.reverse, self.holonomic, self.clearance)
+        digest = hashlib.sha256(f"car {car!r} {self.grid.frame!r} {list(map(len, self.footprint.parts))}".encode())
+        for part in (*self.footprint.parts, self.grid.occupied):
+            digest.update(part.tobytes())
+        return digest.hexdigest()
+
+    @property
+    def _corners(self) -> Floats:
+        """The corners of the parts, with the clearance, (n, 2)."""
+        return np.vstack(self._footprint.parts)
+
+    def _seen_from(self, pose: Floats, point: Floats) -> Floats:
+        """Return where a map point, (2,), lies from a pose: forwards and to the left."""
+        x, y = point - pose[:2]
+        cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+        return np.array([cosine * x + sine * y, cosine * y - sine * x])
+
+    def _side(self, point: Floats) -> str:
+        """Return in words which part of the footprint a point, (2,), seen from it is at."""
+        low, high = self.footprint.bounds
+        x, y = np.clip((point - low) / (high - low), 0.0, 1.0)
+        along = "front" if x > 1.0 - _THIRD else "rear" if x < _THIRD else ""
+        # Where y points down, what turns by positive angles turns to the right.
+        left, right = ("left", "right") if self.grid.frame.y_up else ("right", "left")
+        across = left if y > 1.0 - _THIRD else right if y < _THIRD else ""
+        if along and across:
+            return f"{along} {across} corner"
+        return f"{along or across} side" if along or across else "middle"
+
+
+def _placed(poses: Floats, point: Floats) -> Floats:
+    """Return where a point of the footprint, (2,), is at poses, (n, 3): (n, 2)."""
+    cosine, sine = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+    by = np.column_stack([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]])
+    placed: Floats = poses[:, :2] + by
+    return placed
+
+
+def _vehicle(grid: GridMap, footprint: Footprint) -> Vehicle:
+    frame = grid.frame
+    if not frame.y_up:
+        return Vehicle(grid.occupied, frame.coefficients(), footprint.native(grid.resolution))
+    # Rows along y, so that angles turn in the kernel as they do on the map.
+    cosine, sine = math.cos(frame.yaw), math.sin(frame.yaw)
+    coefficients = np.array([*frame.origin, cosine, sine, -sine, cosine, frame.resolution, 0.0])
+    return Vehicle(np.ascontiguousarray(grid.occupied[::-1]), coefficients, footprint.native(grid.resolution))
