@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.collision.numbered_scene import FEW, MOST
+from evenroad.collision.scene_changes import FEW, MOST
 from evenroad.errors import InvalidValue, UnknownName
 from tests.robots.kernel_arms import ur5
 from tests.threads import together

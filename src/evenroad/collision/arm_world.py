@@ -21,9 +21,9 @@ from evenroad._time_limit import require_time_for
 from evenroad.collision.coerce import as_robot, as_scene
 from evenroad.collision.distance import LEAST, MOST, Distance, Pair
 from evenroad.collision.native_scene import native_scene
-from evenroad.collision.numbered_scene import NumberedScene
 from evenroad.collision.prepared_robots import Prepared, prepared
 from evenroad.collision.robot_tables import PADDING, RobotTables
+from evenroad.collision.scene_changes import NumberedScene
 from evenroad.collision.scene_notes import scene_notes
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose

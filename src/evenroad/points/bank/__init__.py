@@ -1,4 +1,4 @@
-"""Trained point sets: those that ship, with an index of their hashes and measures."""
+"""Trained point sets: those that ship, with an index of their hashes."""
 
 from evenroad._lazy import names_on_use
 
