@@ -1,0 +1,113 @@
+#include "base.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+jmp_buf on_failure;
+char failure[400];
+
+typedef union Block {
+  union Block* earlier;
+  double aligned[2];
+} Block;
+
+static Block* latest;
+
+void fail(int code, const char* format, ...) {
+  va_list values;
+  va_start(values, format);
+  vsnprintf(failure, sizeof failure, format, values);
+  va_end(values);
+  for (char* each = failure; *each; ++each) {
+    if ((unsigned char)*each < ' ') *each = '?';
+  }
+  longjmp(on_failure, code);
+}
+
+void* take(size_t count, size_t size) {
+  if (count > (SIZE_MAX - sizeof(Block)) / size) fail(BAD_INPUT, "too large");
+  Block* block = calloc(1, sizeof(Block) + count * size);
+  if (!block) fail(BAD_INPUT, "out of memory");
+  block->earlier = latest;
+  latest = block;
+  return block + 1;
+}
+
+void* mark(void) { return latest; }
+
+void release(void* since) {
+  while (latest != since) {
+    Block* block = latest;
+    latest = block->earlier;
+    free(block);
+  }
+}
+
+char* copied(const char* text, size_t length) {
+  char* copy = take(length + 1, 1);
+  memcpy(copy, text, length);
+  return copy;
+}
+
+void read_numbers(const char* text, double* numbers, size_t count, const char* where) {
+  for (size_t i = 0; i < count; ++i) {
+    text += strspn(text, " \t\r\n");
+    size_t width = strspn(text, "0123456789+-.eE");
+    char* end = NULL;
+    numbers[i] = strtod(text, &end);
+    if (!width || end != text + width || !(fabs(numbers[i]) < 1e9))
+      fail(BAD_INPUT, "%s: no number: %.40s", where, text);
+    text = end;
+  }
+  if (text[strspn(text, " \t\r\n")]) fail(BAD_INPUT, "%s: more than %zu numbers", where, count);
+}
+
+Vector sum(Vector a, Vector b) { return (Vector){a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vector difference(Vector a, Vector b) { return (Vector){a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vector scaled(double factor, Vector a) { return (Vector){factor * a.x, factor * a.y, factor * a.z}; }
+Vector cross(Vector a, Vector b) {
+  return (Vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double length(Vector a) { return sqrt(dot(a, a)); }
+
+Vector turned(const Pose* pose, Vector a) {
+  return sum(scaled(a.x, pose->x), sum(scaled(a.y, pose->y), scaled(a.z, pose->z)));
+}
+Vector placed(const Pose* pose, Vector a) { return sum(turned(pose, a), pose->at); }
+Vector turned_in(const Pose* pose, Vector a) { return (Vector){dot(pose->x, a), dot(pose->y, a), dot(pose->z, a)}; }
+
+Pose composed(const Pose* outer, const Pose* inner) {
+  return (Pose){turned(outer, inner->x), turned(outer, inner->y), turned(outer, inner->z), placed(outer, inner->at)};
+}
+
+Pose identity(void) { return (Pose){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}; }
+
+Pose pose_of_turn(Vector axis, double angle) {
+  double c = cos(angle), s = sin(angle), v = 1 - c;
+  return (Pose){{c + v * axis.x * axis.x, v * axis.x * axis.y + s * axis.z, v * axis.x * axis.z - s * axis.y},
+                {v * axis.x * axis.y - s * axis.z, c + v * axis.y * axis.y, v * axis.y * axis.z + s * axis.x},
+                {v * axis.x * axis.z + s * axis.y, v * axis.y * axis.z - s * axis.x, c + v * axis.z * axis.z},
+                {0, 0, 0}};
+}
+
+Pose pose_of_angles(const double rpy[3], Vector at) {
+  Pose roll = pose_of_turn((Vector){1, 0, 0}, rpy[0]);
+  Pose pitch = pose_of_turn((Vector){0, 1, 0}, rpy[1]);
+  Pose yaw = pose_of_turn((Vector){0, 0, 1}, rpy[2]);
+  Pose inner = composed(&pitch, &roll), pose = composed(&yaw, &inner);
+  pose.at = at;
+  return pose;
+}
+
+Pose pose_of_quaternion(const double xyzw[4], Vector at) {
+  Vector axis = {xyzw[0], xyzw[1], xyzw[2]};
+  double sine = length(axis);
+  if (!(sine + fabs(xyzw[3]) > 0)) fail(BAD_INPUT, "a quaternion of length 0");
+  Pose pose = sine > 0 ? pose_of_turn(scaled(1 / sine, axis), 2 * atan2(sine, xyzw[3])) : identity();
+  pose.at = at;
+  return pose;
+}

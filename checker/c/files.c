@@ -1,0 +1,109 @@
+#include "files.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { LARGEST = 1 << 30 };
+
+static uint32_t rotated(uint32_t word, int by) { return word >> by | word << (32 - by); }
+
+/* FIPS 180-4, 6.2.2: one block of 64 bytes. */
+static void sha256_block(uint32_t state[8], const uint8_t* block) {
+  static const uint32_t constants[64] = {
+      0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+      0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+      0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+      0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+      0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+      0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+      0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+      0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
+  uint32_t w[64], s[8];
+  for (int i = 0; i < 16; ++i) {
+    const uint8_t* four = block + 4 * i;
+    w[i] = (uint32_t)four[0] << 24 | (uint32_t)four[1] << 16 | (uint32_t)four[2] << 8 | four[3];
+  }
+  for (int i = 16; i < 64; ++i) {
+    uint32_t s0 = rotated(w[i - 15], 7) ^ rotated(w[i - 15], 18) ^ w[i - 15] >> 3;
+    uint32_t s1 = rotated(w[i - 2], 17) ^ rotated(w[i - 2], 19) ^ w[i - 2] >> 10;
+    w[i] = w[i - 16] + s0 + w[i - 7] + s1;
+  }
+  memcpy(s, state, sizeof s);
+  for (int i = 0; i < 64; ++i) {
+    uint32_t s1 = rotated(s[4], 6) ^ rotated(s[4], 11) ^ rotated(s[4], 25);
+    uint32_t first = s[7] + s1 + ((s[4] & s[5]) ^ (~s[4] & s[6])) + constants[i] + w[i];
+    uint32_t s0 = rotated(s[0], 2) ^ rotated(s[0], 13) ^ rotated(s[0], 22);
+    uint32_t second = s0 + ((s[0] & s[1]) ^ (s[0] & s[2]) ^ (s[1] & s[2]));
+    memmove(s + 1, s, 7 * sizeof s[0]);
+    s[4] += first;
+    s[0] = first + second;
+  }
+  for (int i = 0; i < 8; ++i) state[i] += s[i];
+}
+
+void sha256_begin(Sha256* hash) {
+  *hash = (Sha256){
+      .state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19}};
+}
+
+void sha256_add(Sha256* hash, const uint8_t* data, size_t size) {
+  while (size) {
+    size_t filled = hash->size % 64, some = 64 - filled < size ? 64 - filled : size;
+    memcpy(hash->block + filled, data, some);
+    hash->size += some;
+    data += some;
+    size -= some;
+    if (hash->size % 64 == 0) sha256_block(hash->state, hash->block);
+  }
+}
+
+void sha256_end(Sha256* hash, uint8_t digest[32]) {
+  uint64_t bits = 8 * hash->size;
+  uint8_t length[8];
+  for (int i = 0; i < 8; ++i) length[i] = (uint8_t)(bits >> (56 - 8 * i));
+  sha256_add(hash, (const uint8_t*)"\x80", 1);
+  while (hash->size % 64 != 56) sha256_add(hash, (const uint8_t*)"", 1);
+  sha256_add(hash, length, 8);
+  for (int i = 0; i < 32; ++i) digest[i] = (uint8_t)(hash->state[i / 4] >> (24 - 8 * (i % 4)));
+}
+
+File read_file(const char* path, Sha256* inputs) {
+  FILE* stream = fopen(path, "rb");
+  if (!stream) fail(BAD_INPUT, "cannot open %s", path);
+  long size = fseek(stream, 0, SEEK_END) ? -1 : ftell(stream);
+  if (size < 0 || size > LARGEST) {
+    fclose(stream);
+    fail(BAD_INPUT, "no file of at most a gigabyte: %s", path);
+  }
+  rewind(stream);
+  uint8_t* data = take((size_t)size + 1, 1);
+  size_t got = fread(data, 1, (size_t)size, stream);
+  fclose(stream);
+  if (got != (size_t)size) fail(BAD_INPUT, "cannot read %s", path);
+  if (inputs) {
+    Sha256 one;
+    uint8_t digest[32];
+    sha256_begin(&one);
+    sha256_add(&one, data, got);
+    sha256_end(&one, digest);
+    sha256_add(inputs, digest, sizeof digest);
+  }
+  return (File){data, got};
+}
+
+char* folder_of(const char* path) {
+  const char* slash = strrchr(path, '/');
+  return copied(path, slash ? (size_t)(slash - path) + 1 : 0);
+}
+
+char* joined(const char* first, const char* second, const char* third) {
+  char* text = take(strlen(first) + strlen(second) + strlen(third) + 1, 1);
+  strcat(strcat(strcpy(text, first), second), third);
+  return text;
+}
+
+bool exists(const char* path) {
+  FILE* stream = fopen(path, "rb");
+  if (stream) fclose(stream);
+  return stream != NULL;
+}

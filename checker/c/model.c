@@ -1,0 +1,212 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pairs.h"
+
+enum { LONGEST_MIMICRY = 10 };
+
+static const double LIMIT_TOLERANCE = 1e-5, NO_RANGE = 1000, ROUNDING = 1e-9;
+
+/* The column of a joint's name in the points, or NONE. */
+static size_t column_of(const Certificate* certificate, const char* name) {
+  for (size_t i = 0; i < certificate->joint_count; ++i) {
+    if (!strcmp(certificate->joints[i], name)) return i;
+  }
+  return NONE;
+}
+
+static double held_value(const Certificate* certificate, const char* name) {
+  for (size_t i = 0; i < certificate->held_count; ++i) {
+    if (!strcmp(certificate->held[i].name, name)) return certificate->held[i].value;
+  }
+  return 0;
+}
+
+/* A joint as `multiplier * value + offset` of a column, or as its constant offset if none moves it. */
+static Frame value_of(const Inputs* inputs, const Certificate* certificate, const Joint* joint) {
+  Frame frame = {.multiplier = 1, .axis = joint->axis, .slides = joint->kind == SLIDES};
+  for (int i = 0; joint->follows != NONE; ++i) {
+    if (i == LONGEST_MIMICRY) fail(BAD_INPUT, "joint %s mimics too many joints", joint->name);
+    frame.offset += frame.multiplier * joint->offset;
+    frame.multiplier *= joint->multiplier;
+    joint = inputs->joints + joint->follows;
+  }
+  frame.column = joint->kind == FIXED ? NONE : column_of(certificate, joint->name);
+  if (frame.column == NONE) frame.offset += frame.multiplier * held_value(certificate, joint->name);
+  return frame;
+}
+
+static double largest_value(const Certificate* certificate, const Frame* frame) {
+  double largest = 0;
+  for (size_t i = 0; i < certificate->points; ++i) {
+    double value = certificate->values[i * certificate->joint_count + frame->column];
+    largest = fmax(largest, fabs(frame->multiplier * value + frame->offset));
+  }
+  return largest;
+}
+
+static Pose step_of(const Frame* frame, double value) {
+  Pose step = frame->slides ? identity() : pose_of_turn(frame->axis, value);
+  if (frame->slides) step.at = scaled(value, frame->axis);
+  return step;
+}
+
+/* A link on the way through the tree: its frame, and where it is there. */
+typedef struct {
+  size_t link, frame;
+  Pose pose;
+} Place;
+
+static void add_body(Model* model, const char* name, const Place* place, size_t attached, const Shapes* shapes) {
+  Body body = {.name = name, .frame = place->frame, .link = place->link, .attached = attached, .pose = place->pose};
+  Solid* solids = take(shapes->count + 1, sizeof *solids);
+  body.solids = take(shapes->count + 1, sizeof *body.solids);
+  for (size_t i = 0; i < shapes->count; ++i) {
+    Pose pose = composed(&place->pose, &shapes->shapes[i].pose);
+    solids[i] = solid_of(shapes->shapes + i, &pose);
+    if (solids[i].elements) body.solids[body.count++] = solids + i;
+  }
+  if (!body.count) return;
+  body.node = node_of(body.solids, body.count, body.frame);
+  model->bodies[model->body_count++] = body;
+}
+
+/* Begin a frame behind a joint that moves, or go on in the parent's; return where the child is. */
+static Place behind(Model* model, const Place* place, const Joint* joint) {
+  Pose fixed = composed(&place->pose, &joint->pose);
+  Frame frame = value_of(model->inputs, model->certificate, joint);
+  if (joint->kind == FIXED) return (Place){joint->child, place->frame, fixed};
+  if (frame.column == NONE) {
+    Pose step = step_of(&frame, frame.offset);
+    return (Place){joint->child, place->frame, composed(&fixed, &step)};
+  }
+  frame.parent = place->frame;
+  frame.fixed = fixed;
+  frame.length = length(fixed.at) + (frame.slides ? largest_value(model->certificate, &frame) : 0);
+  model->frames[model->frame_count] = frame;
+  return (Place){joint->child, model->frame_count++, identity()};
+}
+
+/* Walk through the links depth first, children in the order of their joints. */
+static void walk(Model* model) {
+  const Inputs* inputs = model->inputs;
+  Place* stack = take(inputs->link_count + 1, sizeof *stack);
+  Place* of_link = take(inputs->link_count + 1, sizeof *of_link);
+  size_t waiting = 0, done = 0;
+  model->order = take(inputs->link_count + 1, sizeof *model->order);
+  stack[waiting++] = (Place){inputs->root, 0, identity()};
+  model->frame_count = 1;
+  while (waiting) {
+    Place place = stack[--waiting];
+    /* A joint waits as its child's link until its turn comes: frames are numbered on the way down. */
+    size_t above = inputs->links[place.link].parent_joint;
+    if (above != NONE) place = behind(model, of_link + inputs->joints[above].parent, inputs->joints + above);
+    of_link[place.link] = place;
+    model->order[done++] = place.link;
+    add_body(model, inputs->links[place.link].name, &place, NONE, &inputs->links[place.link].shapes);
+    for (size_t i = inputs->joint_count; i--;) {
+      if (inputs->joints[i].parent == place.link) stack[waiting++] = (Place){.link = inputs->joints[i].child};
+    }
+  }
+  for (size_t i = 0; i < inputs->attached_count; ++i) {
+    const Attached* attached = inputs->attached + i;
+    if (link_named(inputs, attached->name) != NONE) fail(BAD_INPUT, "%.60s is a link", attached->name);
+    add_body(model, attached->name, of_link + attached->link, i, &attached->shapes);
+  }
+}
+
+static void refuse_unknown_names(const Inputs* inputs, const Certificate* certificate) {
+  for (size_t i = 0; i < certificate->joint_count; ++i) {
+    size_t joint = joint_named(inputs, certificate->joints[i]);
+    if (joint == NONE || inputs->joints[joint].kind == FIXED || inputs->joints[joint].follows != NONE) {
+      fail(REFUSED, "no joint that moves by itself: %.60s", certificate->joints[i]);
+    }
+  }
+  for (size_t i = 0; i < certificate->held_count; ++i) {
+    const char* name = certificate->held[i].name;
+    if (joint_named(inputs, name) == NONE) fail(REFUSED, "no joint that can be held: %.60s", name);
+  }
+}
+
+static void require_within(const Certificate* certificate, size_t column, double lower, double upper) {
+  if (upper - lower > NO_RANGE) return;
+  for (size_t i = 0; i < certificate->points; ++i) {
+    double value = certificate->values[i * certificate->joint_count + column];
+    if (!(value >= lower - LIMIT_TOLERANCE && value <= upper + LIMIT_TOLERANCE)) {
+      fail(REFUSED, "%.60s = %.9g leaves its limits", certificate->joints[column], value);
+    }
+  }
+}
+
+static void require_limits(const Inputs* inputs, const Certificate* certificate) {
+  for (size_t i = 0; i < certificate->joint_count; ++i) {
+    const Joint* joint = inputs->joints + joint_named(inputs, certificate->joints[i]);
+    if (joint->limited) require_within(certificate, i, joint->lower, joint->upper);
+    const Entry* range = inputs->limits ? child_of(inputs->limits, certificate->joints[i]) : NULL;
+    if (!range) continue;
+    double lower = 0, upper = 0;
+    if (range->kind != LIST || !range->child || range->child->next != range->last) {
+      fail(BAD_INPUT, "limits of %.60s must be two numbers", range->key);
+    }
+    read_numbers(range->child->text, &lower, 1, range->key);
+    read_numbers(range->last->text, &upper, 1, range->key);
+    require_within(certificate, i, lower, upper);
+  }
+}
+
+/* The largest number of joints from the root to a link. */
+static size_t deepest(const Inputs* inputs) {
+  size_t most = 0;
+  for (size_t i = 0; i < inputs->link_count; ++i) {
+    size_t depth = 0;
+    for (size_t link = i; inputs->links[link].parent_joint != NONE; ++depth) {
+      link = inputs->joints[inputs->links[link].parent_joint].parent;
+    }
+    if (depth > most) most = depth;
+  }
+  return most;
+}
+
+/* Refuse robots so long, or values so large, that rounding could exceed the least gap, or that pass a plane's box. */
+static void require_bounded(const Model* model) {
+  const Certificate* certificate = model->certificate;
+  double largest = 0, factor = 1, robot = 0, farthest = 0, planes = 0;
+  double* chain = take(model->frame_count, sizeof *chain);
+  for (size_t i = 0; i < certificate->points * certificate->joint_count; ++i) {
+    largest = fmax(largest, fabs(certificate->values[i]));
+  }
+  for (size_t i = 1; i < model->frame_count; ++i) {
+    chain[i] = chain[model->frames[i].parent] + model->frames[i].length;
+    factor = fmax(factor, fabs(model->frames[i].multiplier));
+  }
+  for (size_t i = 0; i < model->pair_count; ++i) {
+    const Node *first = model->pairs[i].first, *second = model->pairs[i].second;
+    double reach = chain[first->frame] + first->reach;
+    if (model->pairs[i].b == NONE) robot = fmax(robot, reach);
+    farthest = fmax(farthest, fmax(reach, chain[second->frame] + second->reach));
+  }
+  for (size_t i = 0; i < model->inputs->obstacle_count; ++i) {
+    const Shape* shape = &model->inputs->obstacles[i].shape;
+    if (shape->kind != PLANE) continue;
+    planes = fmax(planes, fabs(dot(shape->pose.z, shape->pose.at)));
+    if (robot + planes >= GROUND) fail(REFUSED, "the robot reaches beyond a plane");
+  }
+  double error = ldexp((double)deepest(model->inputs) * farthest * (1 + largest * factor), -46);
+  if (!(error < ROUNDING)) fail(REFUSED, "too large a robot: sums may be wrong by %g m", error);
+}
+
+Model* model_of(const Inputs* inputs, const Certificate* certificate) {
+  Model* model = take(1, sizeof *model);
+  model->inputs = inputs;
+  model->certificate = certificate;
+  model->frames = take(inputs->joint_count + 1, sizeof *model->frames);
+  model->bodies = take(inputs->link_count + inputs->attached_count + 1, sizeof *model->bodies);
+  refuse_unknown_names(inputs, certificate);
+  require_limits(inputs, certificate);
+  walk(model);
+  find_allowed(model);
+  find_pairs(model);
+  require_bounded(model);
+  return model;
+}

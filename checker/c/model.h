@@ -1,0 +1,51 @@
+/* What a certificate is about: the frames that its joints move, the bodies in them, and the pairs to be proved. */
+#ifndef EVENROAD_MODEL_H
+#define EVENROAD_MODEL_H
+
+#include "certificate.h"
+#include "inputs.h"
+#include "nodes.h"
+
+/* A frame behind a joint that moves; frame 0 is the root's. */
+typedef struct {
+  size_t parent, column; /* of the points */
+  double multiplier, offset;
+  Pose fixed; /* of the joint, in the parent's frame */
+  Vector axis;
+  bool slides;
+  double length; /* from the parent's origin to the joint, and the largest slide */
+} Frame;
+
+typedef struct {
+  const char* name;
+  size_t frame, link, attached; /* `attached` is NONE for a link */
+  Pose pose;                    /* in its frame */
+  double padding;
+  Solid** solids;
+  size_t count;
+  bool* allowed; /* for each obstacle */
+  Node* node;
+} Body;
+
+/* Two nodes that must stay apart: some bodies and the obstacles, or two bodies. */
+typedef struct {
+  Node *first, *second;
+  double margin;
+  size_t a, b; /* bodies; of obstacles b is NONE, and `group` names the first body of a */
+  bool apart;  /* as wholes, at some time */
+} Pair;
+
+typedef struct {
+  const Inputs* inputs;
+  const Certificate* certificate;
+  Frame* frames;
+  Body* bodies;
+  Pair* pairs;
+  size_t* order; /* of links, depth first */
+  size_t* group; /* of each body, the first body of its node against obstacles */
+  size_t frame_count, body_count, pair_count;
+} Model;
+
+Model* model_of(const Inputs* inputs, const Certificate* certificate);
+
+#endif

@@ -1,0 +1,143 @@
+#include "pairs.h"
+
+#include <string.h>
+
+static Body* body_named(const Model* model, const char* name) {
+  for (size_t i = 0; i < model->body_count; ++i) {
+    if (!strcmp(model->bodies[i].name, name)) return model->bodies + i;
+  }
+  return NULL;
+}
+
+static void allow(const Model* model, const char* body, const char* obstacle) {
+  size_t i = obstacle_named(model->inputs, obstacle);
+  Body* found = body_named(model, body);
+  if (i != NONE && found) found->allowed[i] = true;
+}
+
+void find_allowed(Model* model) {
+  const Inputs* inputs = model->inputs;
+  const Certificate* certificate = model->certificate;
+  for (size_t i = 0; i < model->body_count; ++i) {
+    model->bodies[i].allowed = take(inputs->obstacle_count + 1, sizeof(bool));
+  }
+  for (size_t i = 0; i < certificate->padding_count; ++i) {
+    Body* body = body_named(model, certificate->padding[i].name);
+    if (!body) fail(REFUSED, "padding of no body: %.60s", certificate->padding[i].name);
+    body->padding = certificate->padding[i].value;
+  }
+  for (const Entry* each = inputs->allowed ? inputs->allowed->child : NULL; each; each = each->next) {
+    if (obstacle_named(inputs, each->key) == NONE)
+      fail(BAD_INPUT, "allowed contact with no obstacle: %.60s", each->key);
+    for (const Entry* link = each->child; link; link = link->next) {
+      if (link->kind != SCALAR) fail(BAD_INPUT, "allowed contacts with a part of %.60s are not read", each->key);
+      allow(model, link->text, each->key);
+    }
+  }
+  for (size_t i = 0; i < inputs->attached_count; ++i) {
+    const Attached* attached = inputs->attached + i;
+    for (const Entry* each = attached->touches ? attached->touches->child : NULL; each; each = each->next) {
+      allow(model, attached->name, each->text);
+    }
+  }
+}
+
+/* Bodies of one frame with the same padding and allowed obstacles, against all other obstacles. */
+static void find_obstacle_pairs(Model* model, Solid** obstacles) {
+  size_t count = model->inputs->obstacle_count;
+  for (size_t i = 0; i < model->body_count; ++i) {
+    const Body* body = model->bodies + i;
+    model->group[i] = NONE;
+    size_t same = 0; /* the first body against the same obstacles */
+    for (size_t k = 0; k < i; ++k) {
+      const Body* other = model->bodies + k;
+      if (model->group[k] != k || memcmp(other->allowed, body->allowed, count) != 0) continue;
+      if (!same) same = k + 1;
+      if (other->frame == body->frame && other->padding == body->padding) model->group[i] = k;
+    }
+    if (!body->frame || model->group[i] != NONE) continue;
+    model->group[i] = i;
+    Solid** left = take(count + 1, sizeof *left);
+    size_t left_count = 0;
+    for (size_t k = 0; k < count; ++k) {
+      if (!body->allowed[k] && obstacles[k]->elements) left[left_count++] = obstacles[k];
+    }
+    if (!left_count) continue;
+    Pair* pair = model->pairs + model->pair_count++;
+    *pair = (Pair){.margin = model->certificate->clearance + body->padding, .a = i, .b = NONE};
+    for (size_t k = 0; same && k + 1 < model->pair_count; ++k) {
+      if (model->pairs[k].a == same - 1) pair->second = model->pairs[k].second;
+    }
+    if (!pair->second) pair->second = node_of(left, left_count, 0);
+  }
+}
+
+/* The node of all bodies that go with the first body of a group. */
+static Node* group_node(const Model* model, size_t first) {
+  size_t count = 0, all = 0;
+  for (size_t i = first; i < model->body_count; ++i) all += model->group[i] == first ? model->bodies[i].count : 0;
+  Solid** solids = take(all + 1, sizeof *solids);
+  for (size_t i = first; i < model->body_count; ++i) {
+    const Body* body = model->bodies + i;
+    for (size_t k = 0; model->group[i] == first && k < body->count; ++k) solids[count++] = body->solids[k];
+  }
+  return count == model->bodies[first].count ? model->bodies[first].node
+                                             : node_of(solids, count, model->bodies[first].frame);
+}
+
+/* Tell whether a link is the next one with shapes above another one, with exactly one movable joint between them. */
+static bool is_next_above(const Model* model, const Body* lower, const Body* upper) {
+  const Inputs* inputs = model->inputs;
+  if (lower->attached != NONE || upper->attached != NONE) return false;
+  int movable = 0;
+  for (size_t link = lower->link; inputs->links[link].parent_joint != NONE;) {
+    const Joint* above = inputs->joints + inputs->links[link].parent_joint;
+    movable += above->kind != FIXED;
+    link = above->parent;
+    if (body_named(model, inputs->links[link].name)) return link == upper->link && movable == 1;
+  }
+  return false;
+}
+
+/* Tell whether an attached object may touch a body: the link that carries it, or one that it names. */
+static bool may_touch(const Model* model, const Body* held, const Body* other) {
+  if (held->attached == NONE) return false;
+  if (other->attached == NONE && other->link == held->link) return true;
+  const Entry* touches = model->inputs->attached[held->attached].touches;
+  for (const Entry* each = touches ? touches->child : NULL; each; each = each->next) {
+    if (!strcmp(each->text, other->name)) return true;
+  }
+  return false;
+}
+
+static bool is_left_out(const Model* model, const Body* a, const Body* b) {
+  const Inputs* inputs = model->inputs;
+  if (a->frame == b->frame || may_touch(model, a, b) || may_touch(model, b, a)) return true;
+  if (!inputs->disabled_count) return is_next_above(model, a, b) || is_next_above(model, b, a);
+  bool links = a->attached == NONE && b->attached == NONE;
+  return links && inputs->disabled[a->link * inputs->link_count + b->link];
+}
+
+void find_pairs(Model* model) {
+  const Inputs* inputs = model->inputs;
+  size_t count = model->body_count;
+  Pose here = identity();
+  Solid** obstacles = take(inputs->obstacle_count + 1, sizeof *obstacles);
+  Solid* solids = take(inputs->obstacle_count + 1, sizeof *solids);
+  for (size_t i = 0; i < inputs->obstacle_count; ++i) {
+    Pose pose = composed(&here, &inputs->obstacles[i].shape.pose);
+    solids[i] = solid_of(&inputs->obstacles[i].shape, &pose);
+    obstacles[i] = solids + i;
+  }
+  model->pairs = take(count + count * count / 2 + 1, sizeof *model->pairs);
+  model->group = take(count + 1, sizeof *model->group);
+  find_obstacle_pairs(model, obstacles);
+  for (size_t i = 0; i < model->pair_count; ++i) model->pairs[i].first = group_node(model, model->pairs[i].a);
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t k = i + 1; k < count; ++k) {
+      const Body *a = model->bodies + i, *b = model->bodies + k;
+      if (is_left_out(model, a, b)) continue;
+      model->pairs[model->pair_count++] = (Pair){.first = a->node, .second = b->node, .a = i, .b = k};
+    }
+  }
+}

@@ -1,0 +1,11 @@
+/* Which bodies of a model must stay apart. */
+#ifndef EVENROAD_PAIRS_H
+#define EVENROAD_PAIRS_H
+
+#include "model.h"
+
+/* Note what the certificate pads and the scene allows; `find_pairs` then makes the pairs in their order. */
+void find_allowed(Model* model);
+void find_pairs(Model* model);
+
+#endif

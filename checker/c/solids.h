@@ -1,0 +1,10 @@
+/* Solids: two surfaces that never touch may lie one inside of the other, which the first state shows. */
+#ifndef EVENROAD_SOLIDS_H
+#define EVENROAD_SOLIDS_H
+
+#include "model.h"
+
+/* Refuse if a piece of one body begins inside of a closed piece of another; the number of open pieces that were met. */
+size_t require_outside(const Model* model);
+
+#endif

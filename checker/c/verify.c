@@ -1,0 +1,161 @@
+#include "verify.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "proof.h"
+#include "solids.h"
+
+Proved verify(const Inputs* inputs, File file) {
+  const Certificate* certificate = read_certificate(file);
+  if (memcmp(certificate->digest, inputs->digest, sizeof inputs->digest) != 0) {
+    fail(REFUSED, "robot, SRDF, scene or meshes are not the files that it was written for");
+  }
+  Model* model = model_of(inputs, certificate);
+  Proved proved = {.model = model, .smallest = prove(model)};
+  proved.opened = require_outside(model);
+  return proved;
+}
+
+void require_same_path(const Certificate* certificate, const char* path) {
+  File file = read_file(path, NULL);
+  char* text = copied((const char*)file.data, file.size);
+  size_t row = 0, joints = certificate->joint_count, ends = certificate->motions + 1;
+  for (char* line = strtok(text, " \t\r\n"); line; line = strtok(NULL, " \t\r\n"), ++row) {
+    size_t column = 0;
+    for (char* cell = line; cell; ++column) {
+      char* comma = strchr(cell, ',');
+      if (comma) *comma++ = 0;
+      if (row > ends || column >= joints) fail(REFUSED, "%s has more than the certificate", path);
+      if (row == 0 && strcmp(cell, certificate->joints[column]) != 0) fail(REFUSED, "%s has other joints", path);
+      double value = 0;
+      if (row) read_numbers(cell, &value, 1, path);
+      if (row && value != certificate->values[((row - 1) * certificate->degree) * joints + column]) {
+        fail(REFUSED, "%s has other waypoints than the certificate", path);
+      }
+      cell = comma;
+    }
+    if (column != joints) fail(REFUSED, "%s has other joints", path);
+  }
+  if (row != ends + 1) fail(REFUSED, "%s has other waypoints than the certificate", path);
+}
+
+/* A list after its title, with commas; nothing if it is empty. */
+static void print_item(const char* title, const char* item, bool* begun) {
+  printf(*begun ? ", %s" : "  %s: %s", *begun ? item : title, item);
+  *begun = true;
+}
+
+static void end_list(bool begun) {
+  if (begun) printf("\n");
+}
+
+static int by_name(const void* a, const void* b) { return strcmp(*(char* const*)a, *(char* const*)b); }
+
+static void print_allowed(const Inputs* inputs) {
+  size_t count = 0, room = 1;
+  const Entry* allowed = inputs->allowed;
+  for (const Entry* each = allowed ? allowed->child : NULL; each; each = each->next) {
+    for (const Entry* link = each->child; link; link = link->next) ++room;
+  }
+  for (size_t i = 0; i < inputs->attached_count; ++i) {
+    const Entry* touches = inputs->attached[i].touches;
+    for (const Entry* each = touches ? touches->child : NULL; each; each = each->next) ++room;
+  }
+  char** lines = take(room, sizeof *lines);
+  for (const Entry* each = allowed ? allowed->child : NULL; each; each = each->next) {
+    for (const Entry* link = each->child; link; link = link->next) {
+      lines[count++] = joined(each->key, " with ", link->text);
+    }
+  }
+  for (size_t i = 0; i < inputs->attached_count; ++i) {
+    const Entry* touches = inputs->attached[i].touches;
+    for (const Entry* each = touches ? touches->child : NULL; each; each = each->next) {
+      bool known = obstacle_named(inputs, each->text) != NONE;
+      if (known) lines[count++] = joined(each->text, " with ", inputs->attached[i].name);
+    }
+  }
+  qsort(lines, count, sizeof *lines, by_name);
+  bool begun = false;
+  for (size_t i = 0; i < count; ++i) print_item("allowed contacts", lines[i], &begun);
+  end_list(begun);
+}
+
+/* Print what no pair of the proof speaks of. */
+static void print_not_claimed(const Proved* proved) {
+  const Model* model = proved->model;
+  const Inputs* inputs = model->inputs;
+  bool begun = false;
+  printf("not claimed:\n");
+  for (size_t i = 0, body = 0; i < inputs->link_count; ++i) {
+    size_t link = model->order[i];
+    if (body < model->body_count && model->bodies[body].link == link && model->bodies[body].attached == NONE) {
+      ++body;
+    } else {
+      print_item("links without collision shapes", inputs->links[link].name, &begun);
+    }
+  }
+  end_list(begun);
+  begun = false;
+  for (size_t i = 0; i < model->body_count; ++i) {
+    const Body* body = model->bodies + i;
+    if (!body->frame) print_item("links that no joint of the path moves, with obstacles", body->name, &begun);
+  }
+  end_list(begun);
+  printf("  links that are fixed to each other: with each other\n");
+  if (inputs->disabled_count) {
+    printf("  pairs of links: %zu that the SRDF disables\n", inputs->disabled_count);
+  } else {
+    printf("  pairs of links: neighbours, as no SRDF disables any\n");
+  }
+  print_allowed(inputs);
+  begun = false;
+  for (size_t i = 0; i < model->certificate->held_count; ++i) {
+    char value[32];
+    snprintf(value, sizeof value, " %g", model->certificate->held[i].value);
+    const char* item = joined(model->certificate->held[i].name, value, "");
+    print_item("that other joints are where they are held", item, &begun);
+  }
+  if (!begun) printf("  that other joints are where they are held: at 0");
+  printf("\n  that the robot is built, calibrated, placed and controlled as the files say: and when it is where\n");
+  if (proved->opened) printf("  what is inside of surfaces with holes: %zu\n", proved->opened);
+}
+
+static bool is_straight(const Certificate* certificate) {
+  size_t joints = certificate->joint_count;
+  for (size_t i = 0; certificate->degree == 2 && i < certificate->motions * joints; ++i) {
+    const double* p = certificate->values + 2 * (i / joints) * joints + i % joints;
+    if (!(fabs(p[joints] - 0.5 * (p[0] + p[2 * joints])) < 1e-12)) return false;
+  }
+  return true;
+}
+
+void print_proved(const Proved* proved) {
+  const Model* model = proved->model;
+  const Certificate* certificate = model->certificate;
+  size_t last = (certificate->points - 1) * certificate->joint_count;
+  printf("PROVED: %zu %s touch nothing", certificate->motions,
+         is_straight(certificate) ? "straight motions" : "curves");
+  if (certificate->clearance > 0) printf(", %g m from all obstacles", certificate->clearance);
+  for (size_t i = 0; i < certificate->padding_count; ++i) {
+    printf(", %s %g m more", certificate->padding[i].name, certificate->padding[i].value);
+  }
+  printf("\n");
+  for (size_t i = 0; i < certificate->joint_count; ++i) {
+    double from = certificate->values[i], to = certificate->values[last + i];
+    printf("  %s: from %.6g to %.6g\n", certificate->joints[i], from, to);
+  }
+  printf("  smallest gap of a step of the proof: %.3g m\n", proved->smallest);
+  printf("pairs proved apart (%zu):\n", model->pair_count);
+  for (size_t i = 0; i < model->pair_count; ++i) {
+    const Pair* pair = model->pairs + i;
+    printf("  %s", model->bodies[pair->a].name);
+    for (size_t k = pair->a + 1; pair->b == NONE && k < model->body_count; ++k) {
+      if (model->group[k] == pair->a) printf(" and %s", model->bodies[k].name);
+    }
+    printf(" - %s\n", pair->b == NONE ? "the obstacles" : model->bodies[pair->b].name);
+  }
+  print_not_claimed(proved);
+}
