@@ -9,13 +9,14 @@ CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL := $(shell find src/evenroad/_native/cpp -name '*.?pp') src/evenroad/_native/CMakeLists.txt tools/build_backend.py
 
-.PHONY: help demo test test-peers lint native sanitize fuzz tidy docs bench bank mazes wheels release-check clean
+.PHONY: help demo test test-peers lint native checker sanitize fuzz tidy docs bench bank mazes wheels release-check clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
 	@echo "make test-peers  tests against OMPL, coal, pinocchio, Klamp't and Planner Arena (installs their wheels)"
 	@echo "make lint   ruff, mypy and clang-format"
 	@echo "make native  the native kernel alone, into src/evenroad/_native"
+	@echo "make checker  the checker of certificates that is written in C -> out/evenroad-verify"
 	@echo "make sanitize  its tests under the address and undefined-behaviour sanitizers"
 	@echo "make fuzz   random arrays for the native kernel under the sanitizers, for long"
 	@echo "make tidy   clang-tidy over the native kernel"
@@ -54,6 +55,10 @@ $(VENV)/.peers: $(VENV)/.dev
 
 native: $(VENV)/.native
 
+checker:
+	@mkdir -p out
+	$(CC) -std=c99 -O2 -Wall -Wextra -Wpedantic -Werror checker/c/*.c -lm -o out/evenroad-verify
+
 # Once for each state of the kernel: its tests where memory errors and undefined behaviour stop the program.
 $(VENV)/.sanitized: $(KERNEL) $(shell find tests/native -name '*.py') | $(VENV)/.dev
 	$(BIN)/python tools/build_backend.py --sanitized
@@ -77,7 +82,7 @@ lint: $(VENV)/.dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/clang-format --dry-run -Werror src/evenroad/_native/cpp/*/*.?pp
+	$(BIN)/clang-format --dry-run -Werror src/evenroad/_native/cpp/*/*.?pp checker/c/*.[ch]
 
 # While clang builds the kernel, which keeps one processor busy for half of the time, packages come and mypy reads.
 test:

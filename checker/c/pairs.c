@@ -27,12 +27,7 @@ void find_allowed(Model* model) {
     body->padding = certificate->padding[i].value;
   }
   for (const Entry* each = inputs->allowed ? inputs->allowed->child : NULL; each; each = each->next) {
-    if (obstacle_named(inputs, each->key) == NONE)
-      fail(BAD_INPUT, "allowed contact with no obstacle: %.60s", each->key);
-    for (const Entry* link = each->child; link; link = link->next) {
-      if (link->kind != SCALAR) fail(BAD_INPUT, "allowed contacts with a part of %.60s are not read", each->key);
-      allow(model, link->text, each->key);
-    }
+    for (const Entry* link = each->child; link; link = link->next) allow(model, link->text, each->key);
   }
   for (size_t i = 0; i < inputs->attached_count; ++i) {
     const Attached* attached = inputs->attached + i;

@@ -114,10 +114,17 @@ static const Entry* section(const Entry* scene, const char* key, bool or_list, c
   return found;
 }
 
+static void require_texts(const Entry* list, const char* where) {
+  bool texts = list->kind == LIST;
+  for (const Entry* each = list->child; each; each = each->next) texts = texts && each->kind == SCALAR;
+  if (!texts) fail(BAD_INPUT, "%s: no list of names; contacts with parts are not read", where);
+}
+
 static void read_attached(Inputs* inputs, const Entry* entry, const char* path, Sha256* hash) {
   Attached* attached = inputs->attached + inputs->attached_count++;
   *attached = (Attached){.name = entry->key, .touches = child_of(entry, "touches")};
   add_shape(&attached->shapes, shape_of(entry, "link touches ", path, entry->key, hash));
+  if (attached->touches) require_texts(attached->touches, entry->key);
   attached->link = link_named(inputs, text_of(entry, "link", ""));
   if (attached->link == NONE) fail(BAD_INPUT, "%s: no such link to be attached to", entry->key);
 }
@@ -181,6 +188,11 @@ void read_scene(Inputs* inputs, const char* path, Sha256* hash) {
     Shape shape = shape_of(each, "clearance ", path, each->key, hash);
     if (obstacle_named(inputs, each->key) != NONE) fail(BAD_INPUT, "%s: two of one name: %.60s", path, each->key);
     inputs->obstacles[inputs->obstacle_count++] = (Obstacle){each->key, shape};
+  }
+  for (const Entry* each = inputs->allowed ? inputs->allowed->child : NULL; each; each = each->next) {
+    if (obstacle_named(inputs, each->key) == NONE)
+      fail(BAD_INPUT, "allowed contact with no obstacle: %.60s", each->key);
+    require_texts(each, each->key);
   }
   for (const Entry* each = attach->child; each; each = each->next) {
     read_attached(inputs, each, path, hash);

@@ -8,7 +8,7 @@
 
 #include "verify.h"
 
-static Inputs *inputs;
+static Inputs* inputs;
 
 /* Read files, or check a certificate; return the exit code. */
 static int answer(int letter, File record) {
@@ -16,7 +16,7 @@ static int answer(int letter, File record) {
   int code = setjmp(on_failure);
   if (code) return code;
   if (letter == 'R') {
-    char *robot = (char *)record.data, *scene = strchr(robot, '\n'), *srdf = scene ? strchr(scene + 1, '\n') : NULL;
+    char *robot = (char*)record.data, *scene = strchr(robot, '\n'), *srdf = scene ? strchr(scene + 1, '\n') : NULL;
     if (!srdf) fail(BAD_INPUT, "three lines are missing");
     *scene++ = *srdf++ = 0;
     inputs = read_inputs(robot, scene, *srdf ? srdf : NULL, places);
@@ -35,8 +35,8 @@ int main(void) {
       release(NULL);
       inputs = NULL;
     }
-    void *kept = mark();
-    uint8_t *data = take(size + 1, 1);
+    void* kept = mark();
+    uint8_t* data = take(size + 1, 1);
     if (fread(data, 1, size, stdin) != size) return 1;
     int code = answer(head[0], (File){data, size});
     if (head[0] != 'R') release(kept);

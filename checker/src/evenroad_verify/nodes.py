@@ -54,8 +54,9 @@ class Nodes:
         if node not in self._halves:
             middles = np.concatenate([shape.points[shape.corners[rows]].mean(1) for shape, rows in self.parts[node]])
             demand(len(middles) > 1, "a single element is halved")
-            # Rounded to 2^-20 m: programs that differ in a last bit order the elements alike.
-            along = np.rint(2.0**20 * middles[:, np.ptp(np.ascontiguousarray(middles.T), axis=1).argmax()])
+            # Rounded to 2^-20 m: programs that differ in a last bit choose one axis, and order the elements alike.
+            rounded = np.rint(2.0**20 * np.ascontiguousarray(middles.T))
+            along = rounded[np.ptp(rounded, axis=1).argmax()]
             is_first = np.zeros(len(along), bool)
             is_first[np.argsort(along, kind="stable")[: len(along) // 2]] = True
             sides: tuple[list[Part], list[Part]] = ([], [])

@@ -99,14 +99,18 @@ std::int64_t Nodes::half(std::int64_t number, int side) {
   if (nodes_[static_cast<std::size_t>(number)].halves[0] < 0) {
     const Node& node = (*this)[number];
     const std::int64_t frame = node.frame;
+    // Rounded: programs that differ in a last bit choose one axis, and order the elements alike.  Ties are in the order
+    // of the file.
     std::vector<Vector> middles;
     for (const Part& part : node.parts) {
-      for (const std::int64_t row : part.rows) middles.push_back(middle(part.shape, row));
+      for (const std::int64_t row : part.rows) {
+        Vector& rounded = middles.emplace_back(middle(part.shape, row));
+        for (double& value : rounded.at) value = std::rint(PER_METRE * value);
+      }
     }
-    // Rounded: programs that differ in a last bit order the elements alike.  Ties are in the order of the file.
     std::vector<double> along;
     const int axis = widest_axis(middles);
-    for (const Vector& each : middles) along.push_back(std::rint(PER_METRE * each[axis]));
+    for (const Vector& each : middles) along.push_back(each[axis]);
     std::vector<std::size_t> order(along.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return along[a] < along[b]; });
