@@ -52,6 +52,18 @@ char* copied(const char* text, size_t length) {
   return copy;
 }
 
+char* joined(const char* first, const char* second, const char* third) {
+  char* text = take(strlen(first) + strlen(second) + strlen(third) + 1, 1);
+  strcat(strcat(strcpy(text, first), second), third);
+  return text;
+}
+
+uint64_t little_endian(const uint8_t* data, int bytes) {
+  uint64_t bits = 0;
+  for (int i = bytes; i--;) bits = bits << 8 | data[i];
+  return bits;
+}
+
 void read_numbers(const char* text, double* numbers, size_t count, const char* where) {
   for (size_t i = 0; i < count; ++i) {
     text += strspn(text, " \t\r\n");

@@ -1,4 +1,4 @@
-/* What all parts of the checker share: memory, errors, numbers, vectors and poses. */
+/* What all parts of the checker share: memory, errors, numbers, vectors and poses; trees of text; files. */
 #ifndef EVENROAD_BASE_H
 #define EVENROAD_BASE_H
 
@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#define NONE SIZE_MAX
 
 /* How a check ends: the exit codes of the command. */
 enum { ACCEPTED = 0, REFUSED = 1, BAD_INPUT = 2 };
@@ -25,11 +27,15 @@ void* take(size_t count, size_t size);
 void* mark(void);
 void release(void* since);
 
-/* A piece of text that ends with a 0 byte, copied. */
+/* A piece of text that ends with a 0 byte, copied; and three texts in a row. */
 char* copied(const char* text, size_t length);
+char* joined(const char* first, const char* second, const char* third);
 
 /* Exactly `count` decimal numbers below 1e9, apart by blanks; fails with `where` in its line. */
 void read_numbers(const char* text, double* numbers, size_t count, const char* where);
+
+/* A number of a few bytes, the lowest first. */
+uint64_t little_endian(const uint8_t* data, int bytes);
 
 typedef struct {
   double x, y, z;
@@ -51,8 +57,65 @@ Vector placed(const Pose* pose, Vector a);    /* a point of the frame, seen from
 Vector turned_in(const Pose* pose, Vector a); /* a direction from outside, seen in the frame */
 Pose composed(const Pose* outer, const Pose* inner);
 Pose identity(void);
+Pose pose_of_turn(Vector axis, double angle);
 Pose pose_of_angles(const double rpy[3], Vector at);      /* about the fixed x, then y, then z */
 Pose pose_of_quaternion(const double xyzw[4], Vector at); /* of any length but 0 */
-Pose pose_of_turn(Vector axis, double angle);
+
+enum { MAPPING = 1, LIST, SCALAR };
+
+/* An element of XML, without the prefix of its name (attributes are children as "@name"), or a value of YAML: items of
+   a list have no key, and its text has those of its items, apart by blanks. */
+typedef struct Entry {
+  const char *key, *text;
+  int kind;
+  struct Entry *child, *last, *next;
+} Entry;
+
+Entry* parse_xml(const char* text, size_t length, const char* file);
+Entry* parse_yaml(const char* text, size_t length, const char* file);
+Entry* append(Entry* parent, const char* key, const char* text, int kind);
+void refuse_equal_keys(const Entry* mapping, const char* file);
+
+/* The first child of this key, or NULL; and the same, where a second one is bad input. */
+Entry* child_of(const Entry* entry, const char* key);
+Entry* only_child_of(const Entry* entry, const char* key);
+
+/* The text of a child: or `otherwise`, or it is bad input. */
+const char* text_of(const Entry* entry, const char* key, const char* otherwise);
+const char* required(const Entry* entry, const char* key, const char* where);
+
+/* Numbers of a child, which keep their values if there is none; tell whether there is one. */
+bool numbers_of(const Entry* entry, const char* key, double* numbers, size_t count, const char* where);
+
+typedef struct {
+  const uint8_t* data; /* a 0 byte follows the last one */
+  size_t size;
+} File;
+
+typedef struct {
+  uint32_t state[8];
+  uint8_t block[64];
+  uint64_t size;
+} Sha256;
+
+/* Where files come from, and the digest of the digests of all that were read. */
+typedef struct {
+  Sha256 hash;
+  const char* const* packages; /* as "NAME=FOLDER" */
+  size_t package_count;
+  const uint8_t* carried; /* by the certificate: each after its length */
+  size_t left;
+  bool own; /* whether the next carried file stands for the one that is asked for */
+} Files;
+
+File read_file(const char* path); /* of at most a gigabyte */
+File next_file(Files* files, const char* path);
+void sha256_begin(Sha256* hash);
+void sha256_end(Sha256* hash, uint8_t digest[32]);
+char* digest_of(File file); /* in hexadecimal digits */
+
+/* The folder of a file: all up to its last slash. */
+char* folder_of(const char* path);
+bool exists(const char* path);
 
 #endif

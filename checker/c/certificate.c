@@ -6,15 +6,9 @@
 
 static const char MAGIC[] = "evenroad certificate 1";
 
-enum { LONGEST_HEADER = 1 << 16, MOST_MOTIONS = 1 << 20 };
+enum { ONCE = 8, LONGEST_HEADER = 1 << 16, MOST_MOTIONS = 1 << 20 };
 
 static const double FARTHEST = 1000;
-
-static uint64_t little_endian(const uint8_t* data, int bytes) {
-  uint64_t bits = 0;
-  for (int i = bytes; i--;) bits = bits << 8 | data[i];
-  return bits;
-}
 
 static size_t count_of(const char* text) {
   size_t width = strspn(text, "0123456789");
@@ -59,22 +53,25 @@ static void read_digest(Certificate* to, const char* text) {
 }
 
 /* Read one line; those that may stand once only are counted in `seen`. */
-static void read_line(Certificate* to, char* line, bool seen[6]) {
-  static const char* const once[] = {"inputs", "clearance", "degree", "motions", "answers", "directions"};
+static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
+  static const char* const once[ONCE] = {"inputs",     "degree",    "motions", "answers",
+                                         "directions", "clearance", "robot",   "scene"};
   char* blank = strchr(line, ' ');
   if (!blank) fail(REFUSED, "a line that is not known: %.60s", line);
   *blank = 0;
   char* value = blank + 1;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < ONCE; ++i) {
     if (strcmp(line, once[i]) != 0) continue;
     if (seen[i]) fail(REFUSED, "said twice: %s", line);
     seen[i] = true;
     if (i == 0) read_digest(to, value);
-    if (i == 1) to->clearance = length_of(value);
-    if (i == 2) to->degree = count_of(value);
-    if (i == 3) to->motions = count_of(value);
-    if (i == 4) to->answer_count = count_of(value);
-    if (i == 5) to->direction_count = count_of(value);
+    if (i == 1) to->degree = count_of(value);
+    if (i == 2) to->motions = count_of(value);
+    if (i == 3) to->answer_count = count_of(value);
+    if (i == 4) to->direction_count = count_of(value);
+    if (i == 5) to->clearance = length_of(value);
+    if (i == 6) to->robot = value;
+    if (i == 7) to->scene = value;
     return;
   }
   if (!strcmp(line, "joint")) {
@@ -99,6 +96,19 @@ static void require_counts(const Certificate* certificate) {
   if (!certificate->motions || certificate->motions >= MOST_MOTIONS) fail(REFUSED, "no motion, or too many");
 }
 
+/* Refuse carried files that are cut off, or that no line announces. */
+static void require_carried(const Certificate* certificate) {
+  if ((certificate->carried_size > 0) != (certificate->robot || certificate->scene)) {
+    fail(REFUSED, "it carries files and does not say so, or says so and does not");
+  }
+  for (size_t at = 0, left = certificate->carried_size; left;) {
+    uint64_t size = left < 8 ? UINT64_MAX : little_endian(certificate->carried + at, 8);
+    if (left < 8 || size > left - 8) fail(REFUSED, "a file that it carries is cut off");
+    at += 8 + (size_t)size;
+    left -= 8 + (size_t)size;
+  }
+}
+
 Certificate* read_certificate(File file) {
   Certificate* to = take(1, sizeof *to);
   const char* start = (const char*)file.data;
@@ -112,21 +122,27 @@ Certificate* read_certificate(File file) {
   to->joints = take(lines + 1, sizeof *to->joints);
   to->held = take(lines + 1, sizeof *to->held);
   to->padding = take(lines + 1, sizeof *to->padding);
-  bool seen[6] = {false};
+  bool seen[ONCE] = {false};
   while (*text) {
     char* line = text;
     text += strcspn(text, "\n");
     if (*text) *text++ = 0;
     read_line(to, line, seen);
   }
-  if (!seen[0] || !seen[2] || !seen[3] || !seen[4] || !seen[5]) fail(REFUSED, "a line is missing");
+  for (int i = 0; i < 5; ++i) {
+    if (!seen[i]) fail(REFUSED, "a line is missing");
+  }
   require_counts(to);
   const uint8_t* body = (const uint8_t*)end + 2;
   uint64_t left = file.size - (size_t)(body - file.data), numbers = 0;
   to->points = to->degree * to->motions + 1;
   numbers = (uint64_t)to->points * to->joint_count; /* below 2^51: counts have 9 digits, a header a megabyte */
   uint64_t packed = (to->answer_count + 2) / 3;
-  if (8 * numbers + packed + 12 * (uint64_t)to->direction_count != left) fail(REFUSED, "a file of another length");
+  uint64_t own = 8 * numbers + packed + 12 * (uint64_t)to->direction_count;
+  if (own > left) fail(REFUSED, "it is cut off");
+  to->carried = body + own;
+  to->carried_size = left - own;
+  require_carried(to);
   to->values = take(numbers, sizeof *to->values);
   for (size_t i = 0; i < numbers; ++i) {
     uint64_t bits = little_endian(body + 8 * i, 8);

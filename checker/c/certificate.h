@@ -2,7 +2,7 @@
 #ifndef EVENROAD_CERTIFICATE_H
 #define EVENROAD_CERTIFICATE_H
 
-#include "files.h"
+#include "base.h"
 
 /* A value of a joint, or the padding of a link. */
 typedef struct {
@@ -18,7 +18,9 @@ typedef struct {
   double clearance;
   size_t degree, motions, answer_count, direction_count, points;
   double* values; /* of a point, one for each joint */
-  const uint8_t *answers, *directions;
+  const uint8_t *answers, *directions, *carried;
+  size_t carried_size;
+  const char *robot, *scene; /* digests of the files of which carried ones were made, or NULL */
 } Certificate;
 
 Certificate* read_certificate(File file);

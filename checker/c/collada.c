@@ -2,8 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh.h"
-#include "tree.h"
+#include "inputs.h"
 
 enum { DEEPEST = 50, MOST_READINGS = 20 };
 

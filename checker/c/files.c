@@ -1,7 +1,7 @@
-#include "files.h"
-
 #include <stdio.h>
 #include <string.h>
+
+#include "base.h"
 
 enum { LARGEST = 1 << 30 };
 
@@ -46,7 +46,7 @@ void sha256_begin(Sha256* hash) {
       .state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19}};
 }
 
-void sha256_add(Sha256* hash, const uint8_t* data, size_t size) {
+static void sha256_add(Sha256* hash, const uint8_t* data, size_t size) {
   while (size) {
     size_t filled = hash->size % 64, some = 64 - filled < size ? 64 - filled : size;
     memcpy(hash->block + filled, data, some);
@@ -67,39 +67,54 @@ void sha256_end(Sha256* hash, uint8_t digest[32]) {
   for (int i = 0; i < 32; ++i) digest[i] = (uint8_t)(hash->state[i / 4] >> (24 - 8 * (i % 4)));
 }
 
-File read_file(const char* path, Sha256* inputs) {
+File read_file(const char* path) {
   FILE* stream = fopen(path, "rb");
   if (!stream) fail(BAD_INPUT, "cannot open %s", path);
   long size = fseek(stream, 0, SEEK_END) ? -1 : ftell(stream);
-  if (size < 0 || size > LARGEST) {
-    fclose(stream);
-    fail(BAD_INPUT, "no file of at most a gigabyte: %s", path);
-  }
+  bool sized = size >= 0 && size <= LARGEST;
   rewind(stream);
-  uint8_t* data = take((size_t)size + 1, 1);
-  size_t got = fread(data, 1, (size_t)size, stream);
+  uint8_t* data = sized ? take((size_t)size + 1, 1) : NULL;
+  size_t got = sized ? fread(data, 1, (size_t)size, stream) : 0;
   fclose(stream);
-  if (got != (size_t)size) fail(BAD_INPUT, "cannot read %s", path);
-  if (inputs) {
-    Sha256 one;
-    uint8_t digest[32];
-    sha256_begin(&one);
-    sha256_add(&one, data, got);
-    sha256_end(&one, digest);
-    sha256_add(inputs, digest, sizeof digest);
-  }
+  if (!sized || got != (size_t)size) fail(BAD_INPUT, "no file of at most a gigabyte: %s", path);
   return (File){data, got};
+}
+
+static void digest_into(File file, uint8_t digest[32]) {
+  Sha256 hash;
+  sha256_begin(&hash);
+  sha256_add(&hash, file.data, file.size);
+  sha256_end(&hash, digest);
+}
+
+char* digest_of(File file) {
+  uint8_t digest[32];
+  char* text = take(65, 1);
+  digest_into(file, digest);
+  for (int i = 0; i < 32; ++i) snprintf(text + 2 * i, 3, "%02x", digest[i]);
+  return text;
+}
+
+File next_file(Files* files, const char* path) {
+  File file;
+  uint8_t digest[32];
+  if (files->own) {
+    if (!files->left) fail(REFUSED, "it does not carry %.200s", path);
+    size_t size = (size_t)little_endian(files->carried, 8); /* which fits, as read_certificate has seen to */
+    file = (File){(uint8_t*)copied((const char*)files->carried + 8, size), size};
+    files->carried += 8 + size;
+    files->left -= 8 + size;
+  } else {
+    file = read_file(path);
+  }
+  digest_into(file, digest);
+  sha256_add(&files->hash, digest, sizeof digest);
+  return file;
 }
 
 char* folder_of(const char* path) {
   const char* slash = strrchr(path, '/');
   return copied(path, slash ? (size_t)(slash - path) + 1 : 0);
-}
-
-char* joined(const char* first, const char* second, const char* third) {
-  char* text = take(strlen(first) + strlen(second) + strlen(third) + 1, 1);
-  strcat(strcat(strcpy(text, first), second), third);
-  return text;
 }
 
 bool exists(const char* path) {

@@ -6,35 +6,36 @@
 #include "verify.h"
 
 static const char USAGE[] =
-    "usage: evenroad-verify [--package NAME=FOLDER] [--path PATH] certificate robot scene [srdf]\n"
-    "Check that a path is proved free of contact: 0 if it is, 1 if the certificate is refused, 2 for bad input.\n";
+    "usage: evenroad-verify [--package NAME=FOLDER] [--path PATH] certificate [robot] [scene] [srdf]\n"
+    "Check that a path is proved free of contact: 0 if it is, 1 if the certificate is refused, 2 for bad input.\n"
+    "- or no robot or scene: the one that the certificate carries.\n";
 
 enum { MOST_PACKAGES = 64 };
 
 /* What is asked for; set before anything can fail. */
 typedef struct {
-  const char *files[4], *path, *packages[MOST_PACKAGES];
-  Places places;
+  const char *certificate, *path, *packages[MOST_PACKAGES];
+  Given given;
 } Asked;
 
 /* Read the command line; false if it is none. */
 static bool understood(int count, char** words, Asked* asked) {
-  int files = 0;
+  const char** files[] = {&asked->certificate, &asked->given.robot, &asked->given.scene, &asked->given.srdf};
+  int taken = 0;
   for (int i = 1; i < count; ++i) {
-    bool package = !strcmp(words[i], "--package"), path = !strcmp(words[i], "--path");
+    bool package = !strcmp(words[i], "--package"), path = !strcmp(words[i], "--path"), none = !strcmp(words[i], "-");
     if (package || path) {
-      if (++i == count) return false;
+      if (++i == count || (package && asked->given.package_count == MOST_PACKAGES)) return false;
       if (path) asked->path = words[i];
-      if (package && asked->places.package_count == MOST_PACKAGES) return false;
-      if (package) asked->packages[asked->places.package_count++] = words[i];
-    } else if (files == 4 || words[i][0] == '-') {
+      if (package) asked->packages[asked->given.package_count++] = words[i];
+    } else if (taken == 4 || (words[i][0] == '-' && !none)) {
       return false;
     } else {
-      asked->files[files++] = words[i];
+      *files[taken++] = none ? NULL : words[i];
     }
   }
-  asked->places.packages = asked->packages;
-  return files >= 3;
+  asked->given.packages = asked->packages;
+  return asked->certificate != NULL;
 }
 
 int main(int count, char** words) {
@@ -47,9 +48,9 @@ int main(int count, char** words) {
   if (code == REFUSED) printf("REFUSED: %s\n", failure);
   if (code == BAD_INPUT) fprintf(stderr, "evenroad-verify: %s\n", failure);
   if (!code) {
-    File certificate = read_file(asked.files[0], NULL);
-    Proved proved = verify(read_inputs(asked.files[1], asked.files[2], asked.files[3], asked.places), certificate);
-    if (asked.path) require_same_path(proved.model->certificate, asked.path);
+    const Certificate* certificate = read_certificate(read_file(asked.certificate));
+    Proved proved = verify(read_inputs(asked.given, certificate), certificate);
+    if (asked.path) require_same_path(certificate, asked.path);
     print_proved(&proved);
   }
   release(NULL);

@@ -1,9 +1,9 @@
-#include "mesh.h"
-
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "inputs.h"
 
 void add_triangle(Mesh* mesh, Vector a, Vector b, Vector c) {
   if (mesh->triangles == mesh->room) {
@@ -24,15 +24,11 @@ static Vector vector_of(const char* text, const char* path) {
   return (Vector){numbers[0], numbers[1], numbers[2]};
 }
 
-static uint32_t word(const uint8_t* data) {
-  return data[0] | (uint32_t)data[1] << 8 | (uint32_t)data[2] << 16 | (uint32_t)data[3] << 24;
-}
-
 static void read_binary_stl(Mesh* mesh, File file) {
   for (size_t i = 0; i < (file.size - 84) / 50; ++i) {
     float numbers[9];
     for (int k = 0; k < 9; ++k) {
-      uint32_t bits = word(file.data + 84 + 50 * i + 12 + 4 * k);
+      uint32_t bits = (uint32_t)little_endian(file.data + 84 + 50 * i + 12 + 4 * k, 4);
       memcpy(numbers + k, &bits, sizeof bits);
     }
     const float* n = numbers;
@@ -107,25 +103,27 @@ static bool ends_with(const char* path, const char* suffix) {
   return true;
 }
 
-Mesh* read_mesh(File file, const char* path) {
+Mesh* read_mesh(File file, const char* path, const double scale[3]) {
   Mesh* mesh = take(1, sizeof *mesh);
-  bool stl = ends_with(path, ".stl");
-  if (stl && file.size >= 84 && (file.size - 84) / 50 == word(file.data + 80) && (file.size - 84) % 50 == 0) {
+  char* text = (char*)file.data;
+  bool stl = ends_with(path, ".stl"), is_text = strlen(text) == file.size;
+  if (stl && file.size > 84 && (file.size - 84) / 50 == little_endian(file.data + 80, 4) &&
+      (file.size - 84) % 50 == 0) {
     read_binary_stl(mesh, file);
-  } else if (strlen((const char*)file.data) != file.size) {
-    fail(BAD_INPUT, "%s: no mesh that is read", path);
-  } else if (stl) {
-    read_ascii_stl(mesh, copied((const char*)file.data, file.size), path);
-  } else if (ends_with(path, ".obj")) {
-    read_obj(mesh, copied((const char*)file.data, file.size), path);
+  } else if (stl && is_text) {
+    read_ascii_stl(mesh, copied(text, file.size), path);
+  } else if (ends_with(path, ".obj") && is_text) {
+    read_obj(mesh, copied(text, file.size), path);
   } else if (ends_with(path, ".dae")) {
     read_collada(mesh, file, path);
   } else {
-    fail(BAD_INPUT, "%s: meshes are STL, OBJ or COLLADA", path);
+    fail(BAD_INPUT, "%s: no STL, OBJ or COLLADA file", path);
   }
   if (!mesh->triangles) fail(BAD_INPUT, "%s: no triangles", path);
   for (size_t i = 0; i < 3 * mesh->triangles; ++i) {
-    if (!(length(mesh->corners[i]) < 1e9)) fail(BAD_INPUT, "%s: a corner that is no number", path);
+    Vector* corner = mesh->corners + i;
+    *corner = (Vector){scale[0] * corner->x, scale[1] * corner->y, scale[2] * corner->z};
+    if (!(length(*corner) < 1e9)) fail(BAD_INPUT, "%s: a corner that is no number", path);
   }
   return mesh;
 }

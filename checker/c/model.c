@@ -58,16 +58,17 @@ typedef struct {
   Pose pose;
 } Place;
 
-static void add_body(Model* model, const char* name, const Place* place, size_t attached, const Shapes* shapes) {
-  Body body = {.name = name, .frame = place->frame, .link = place->link, .attached = attached, .pose = place->pose};
-  Solid* solids = take(shapes->count + 1, sizeof *solids);
-  body.solids = take(shapes->count + 1, sizeof *body.solids);
-  for (size_t i = 0; i < shapes->count; ++i) {
-    Pose pose = composed(&place->pose, &shapes->shapes[i].pose);
-    solids[i] = solid_of(shapes->shapes + i, &pose);
-    if (solids[i].elements) body.solids[body.count++] = solids + i;
+/* Add a body unless it has no shapes; `of` is a link, or an attached object. */
+static void add_body(Model* model, const Link* of, const Place* place, size_t attached) {
+  if (!of->count) return;
+  Body body = {.name = of->name, .frame = place->frame, .link = place->link, .attached = attached, .count = of->count};
+  Solid* solids = take(of->count, sizeof *solids);
+  body.solids = take(of->count, sizeof *body.solids);
+  for (size_t i = 0; i < of->count; ++i) {
+    Pose pose = composed(&place->pose, &of->shapes[i].pose);
+    solids[i] = solid_of(of->shapes + i, &pose);
+    body.solids[i] = solids + i;
   }
-  if (!body.count) return;
   body.node = node_of(body.solids, body.count, body.frame);
   model->bodies[model->body_count++] = body;
 }
@@ -104,15 +105,13 @@ static void walk(Model* model) {
     if (above != NONE) place = behind(model, of_link + inputs->joints[above].parent, inputs->joints + above);
     of_link[place.link] = place;
     model->order[done++] = place.link;
-    add_body(model, inputs->links[place.link].name, &place, NONE, &inputs->links[place.link].shapes);
+    add_body(model, inputs->links + place.link, &place, NONE);
     for (size_t i = inputs->joint_count; i--;) {
       if (inputs->joints[i].parent == place.link) stack[waiting++] = (Place){.link = inputs->joints[i].child};
     }
   }
   for (size_t i = 0; i < inputs->attached_count; ++i) {
-    const Attached* attached = inputs->attached + i;
-    if (link_named(inputs, attached->name) != NONE) fail(BAD_INPUT, "%.60s is a link", attached->name);
-    add_body(model, attached->name, of_link + attached->link, i, &attached->shapes);
+    add_body(model, inputs->attached + i, of_link + inputs->attached[i].link, i);
   }
 }
 
@@ -143,15 +142,9 @@ static void require_limits(const Inputs* inputs, const Certificate* certificate)
   for (size_t i = 0; i < certificate->joint_count; ++i) {
     const Joint* joint = inputs->joints + joint_named(inputs, certificate->joints[i]);
     if (joint->limited) require_within(certificate, i, joint->lower, joint->upper);
-    const Entry* range = inputs->limits ? child_of(inputs->limits, certificate->joints[i]) : NULL;
-    if (!range) continue;
-    double lower = 0, upper = 0;
-    if (range->kind != LIST || !range->child || range->child->next != range->last) {
-      fail(BAD_INPUT, "limits of %.60s must be two numbers", range->key);
-    }
-    read_numbers(range->child->text, &lower, 1, range->key);
-    read_numbers(range->last->text, &upper, 1, range->key);
-    require_within(certificate, i, lower, upper);
+    double range[2];
+    bool narrowed = numbers_of(inputs->limits, certificate->joints[i], range, 2, "limits");
+    if (narrowed) require_within(certificate, i, range[0], range[1]);
   }
 }
 

@@ -19,7 +19,6 @@ typedef struct {
 typedef struct {
   const char* name;
   size_t frame, link, attached; /* `attached` is NONE for a link */
-  Pose pose;                    /* in its frame */
   double padding;
   Solid** solids;
   size_t count;

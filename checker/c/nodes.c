@@ -6,12 +6,12 @@
 
 static const double WIDEST = 1000;
 
-/* The corners of a mesh, of one element if it is convex. */
+/* The corners of a mesh, of one element if it is convex, or the points of a cloud. */
 static void add_mesh(Solid* solid, const Shape* shape, const Pose* pose) {
-  size_t all = shape->convex ? shape->mesh->distinct : 3 * shape->mesh->triangles;
+  size_t all = shape->mesh->distinct ? shape->mesh->distinct : 3 * shape->mesh->triangles;
   Vector* corners = take(all, sizeof *corners);
   for (size_t i = 0; i < all; ++i) corners[i] = placed(pose, shape->mesh->corners[i]);
-  solid->corners = shape->convex ? all : 3;
+  solid->corners = shape->kind == CLOUD ? 1 : shape->convex ? all : 3;
   solid->elements = all / solid->corners;
   solid->all = corners;
 }
@@ -31,11 +31,11 @@ static void add_box(Solid* solid, const double size[3], const Pose* pose) {
 Solid solid_of(const Shape* shape, const Pose* pose) {
   Solid solid = {.shape = shape, .ball = shape->clearance, .elements = 1, .axis = pose->z};
   const double *size = shape->size, plane[3] = {2 * GROUND, 2 * GROUND, GROUND};
-  if (shape->kind == MESH) {
+  if (shape->kind == MESH || shape->kind == CLOUD) {
     add_mesh(&solid, shape, pose);
+    if (shape->kind == CLOUD) solid.ball += size[0];
   } else if (shape->kind == BOX) {
     add_box(&solid, size, pose);
-    if (size[0] + size[1] + size[2] <= 0) solid.elements = 0;
   } else if (shape->kind == PLANE) {
     Pose below = *pose;
     below.at = scaled(dot(pose->z, pose->at) - GROUND / 2, pose->z);
@@ -49,7 +49,6 @@ Solid solid_of(const Shape* shape, const Pose* pose) {
     solid.all = corners;
     if (shape->kind == CYLINDER) solid.disc = size[0];
     if (shape->kind != CYLINDER) solid.ball += size[0];
-    if (size[0] <= 0 && (shape->kind != CYLINDER || size[1] <= 0)) solid.elements = 0;
   }
   for (size_t i = 0; i < solid.corners * solid.elements; ++i) {
     const Vector* corner = solid.all + i;

@@ -9,12 +9,6 @@ static Body* body_named(const Model* model, const char* name) {
   return NULL;
 }
 
-static void allow(const Model* model, const char* body, const char* obstacle) {
-  size_t i = obstacle_named(model->inputs, obstacle);
-  Body* found = body_named(model, body);
-  if (i != NONE && found) found->allowed[i] = true;
-}
-
 void find_allowed(Model* model) {
   const Inputs* inputs = model->inputs;
   const Certificate* certificate = model->certificate;
@@ -26,14 +20,9 @@ void find_allowed(Model* model) {
     if (!body) fail(REFUSED, "padding of no body: %.60s", certificate->padding[i].name);
     body->padding = certificate->padding[i].value;
   }
-  for (const Entry* each = inputs->allowed ? inputs->allowed->child : NULL; each; each = each->next) {
-    for (const Entry* link = each->child; link; link = link->next) allow(model, link->text, each->key);
-  }
-  for (size_t i = 0; i < inputs->attached_count; ++i) {
-    const Attached* attached = inputs->attached + i;
-    for (const Entry* each = attached->touches ? attached->touches->child : NULL; each; each = each->next) {
-      allow(model, attached->name, each->text);
-    }
+  for (size_t i = 0; i < inputs->allowed_count; ++i) {
+    Body* body = body_named(model, inputs->allowed[i].body);
+    if (body) body->allowed[obstacle_named(inputs, inputs->allowed[i].obstacle)] = true;
   }
 }
 

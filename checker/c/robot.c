@@ -3,17 +3,7 @@
 
 #include "inputs.h"
 
-enum { MOST_LINKS = 2000 };
-
-void add_shape(Shapes* shapes, Shape shape) {
-  if (shapes->count == shapes->room) {
-    shapes->room = 2 * shapes->room + 4;
-    Shape* more = take(shapes->room, sizeof *more);
-    if (shapes->count) memcpy(more, shapes->shapes, shapes->count * sizeof *more);
-    shapes->shapes = more;
-  }
-  shapes->shapes[shapes->count++] = shape;
-}
+enum { MOST_LINKS = 2000, MOST_FOLDERS = 40 };
 
 size_t link_named(const Inputs* inputs, const char* name) {
   for (size_t i = 0; i < inputs->link_count; ++i) {
@@ -27,18 +17,6 @@ size_t joint_named(const Inputs* inputs, const char* name) {
     if (!strcmp(inputs->joints[i].name, name)) return i;
   }
   return NONE;
-}
-
-static const char* required(const Entry* element, const char* key, const char* where) {
-  const char* text = text_of(element, key, NULL);
-  if (!text) fail(BAD_INPUT, "%s: no %s", where, key + 1);
-  return text;
-}
-
-/* Numbers of an attribute, which keep their values where there is none. */
-static void numbers_of(const Entry* element, const char* key, double* numbers, size_t count, const char* where) {
-  const char* text = element ? text_of(element, key, NULL) : NULL;
-  if (text) read_numbers(text, numbers, count, where);
 }
 
 static Pose pose_of(const Entry* owner, const char* where) {
@@ -55,18 +33,19 @@ static Pose pose_of(const Entry* owner, const char* where) {
 }
 
 /* The path of a mesh: of a package given by name, or in a folder of that name beside or above the URDF. */
-static char* mesh_path(const char* name, Places places) {
+static char* mesh_path(const char* name, const char* urdf, const Files* files) {
   static const char package[] = "package://", file[] = "file://";
+  if (files->own) return joined(name, "", "");
   if (!strncmp(name, file, strlen(file))) return joined(name + strlen(file), "", "");
-  if (strncmp(name, package, strlen(package)) != 0) return joined(*name == '/' ? "" : places.folder, name, "");
+  if (strncmp(name, package, strlen(package)) != 0) return joined(*name == '/' ? "" : folder_of(urdf), name, "");
   const char* inside = name + strlen(package);
   size_t width = strcspn(inside, "/");
-  for (size_t i = 0; i < places.package_count; ++i) {
-    const char* given = places.packages[i];
+  for (size_t i = 0; i < files->package_count; ++i) {
+    const char* given = files->packages[i];
     if (!strncmp(given, inside, width) && given[width] == '=') return joined(given + width + 1, inside + width, "");
   }
-  char* above = joined(places.folder, "", "");
-  for (int i = 0; i < 40; ++i) {
+  char* above = folder_of(urdf);
+  for (int i = 0; i < MOST_FOLDERS; ++i) {
     char* path = joined(above, inside, "");
     if (exists(path)) return path;
     above = joined(above, "../", "");
@@ -74,42 +53,41 @@ static char* mesh_path(const char* name, Places places) {
   fail(BAD_INPUT, "no file for %.200s: name its folder by --package", name);
 }
 
-static void read_mesh_of(Shape* shape, const Entry* element, Places places, Sha256* hash) {
+static Mesh* mesh_of(const Entry* element, const char* urdf, Files* files) {
   double scale[3] = {1, 1, 1};
-  const char* path = mesh_path(required(element, "@filename", "a mesh"), places);
+  const char* path = mesh_path(required(element, "@filename", "a mesh"), urdf, files);
   const char* text = text_of(element, "@scale", "1 1 1");
   bool one = !text[strcspn(text, " \t\r\n")];
   read_numbers(text, scale, one ? 1 : 3, path);
   if (one) scale[1] = scale[2] = scale[0];
-  Mesh* mesh = read_mesh(read_file(path, hash), path);
-  for (size_t i = 0; i < 3 * mesh->triangles; ++i) {
-    Vector* corner = mesh->corners + i;
-    *corner = (Vector){scale[0] * corner->x, scale[1] * corner->y, scale[2] * corner->z};
-  }
-  shape->kind = MESH;
-  shape->mesh = mesh;
+  return read_mesh(next_file(files, path), path, scale);
 }
 
-static void read_collision(Link* link, const Entry* collision, Places places, Sha256* hash) {
-  static const char* const kinds[] = {"box", "sphere", "cylinder", "capsule", "mesh"};
-  const Entry *geometry = only_child_of(collision, "geometry"), *element = geometry ? geometry->child : NULL;
-  Shape shape = {.pose = pose_of(collision, link->name)};
-  for (int i = 0; element && i < 5; ++i) {
-    if (!strcmp(element->key, kinds[i])) shape.kind = i + BOX;
-  }
-  if (!shape.kind || element->next) fail(BAD_INPUT, "link %s: no single shape that is read", link->name);
-  if (shape.kind == BOX) {
-    read_numbers(required(element, "@size", link->name), shape.size, 3, link->name);
-  } else if (shape.kind == MESH) {
-    read_mesh_of(&shape, element, places, hash);
-  } else {
-    read_numbers(required(element, "@radius", link->name), shape.size, 1, link->name);
-    if (shape.kind != SPHERE) read_numbers(required(element, "@length", link->name), shape.size + 1, 1, link->name);
-  }
+bool read_size(Shape* shape, const Entry* entry, const char* const keys[3], const char* where) {
+  if (shape->kind == BOX) read_numbers(required(entry, keys[0], where), shape->size, 3, where);
+  if (shape->kind != BOX) read_numbers(required(entry, keys[1], where), shape->size, 1, where);
+  if (shape->kind > SPHERE) read_numbers(required(entry, keys[2], where), shape->size + 1, 1, where);
   for (int i = 0; i < 3; ++i) {
-    if (shape.size[i] < 0) fail(BAD_INPUT, "link %s: a size below 0", link->name);
+    if (shape->size[i] < 0) fail(BAD_INPUT, "%s: a size below 0", where);
   }
-  add_shape(&link->shapes, shape);
+  return shape->size[0] + shape->size[1] + shape->size[2] > 0 && (shape->kind != CAPSULE || shape->size[0] > 0);
+}
+
+/* Read the shapes of a link; those of no size are none. */
+static void read_collisions(Link* link, const Entry* element, const char* urdf, Files* files) {
+  static const char* const keys[] = {"@size", "@radius", "@length"};
+  size_t count = 0;
+  for (const Entry* each = element->child; each; each = each->next) count += !strcmp(each->key, "collision");
+  link->shapes = take(count + 1, sizeof *link->shapes);
+  for (const Entry* each = element->child; each; each = each->next) {
+    if (strcmp(each->key, "collision") != 0) continue;
+    const Entry *geometry = only_child_of(each, "geometry"), *of = geometry ? geometry->child : NULL;
+    Shape shape = {.pose = pose_of(each, link->name)};
+    while (of && shape.kind < PLANE && strcmp(of->key, kind_names[shape.kind]) != 0) ++shape.kind;
+    if (!of || of->next || shape.kind == PLANE) fail(BAD_INPUT, "link %s: no single shape that is read", link->name);
+    if (shape.kind == MESH) shape.mesh = mesh_of(of, urdf, files);
+    if (shape.kind == MESH || read_size(&shape, of, keys, link->name)) link->shapes[link->count++] = shape;
+  }
 }
 
 static void read_limits(Joint* joint, const Entry* element, const char* type) {
@@ -123,11 +101,11 @@ static void read_limits(Joint* joint, const Entry* element, const char* type) {
 
 static void read_joint(Inputs* inputs, Joint* joint, const Entry* element) {
   const char* type = required(element, "@type", joint->name);
-  joint->kind = !strcmp(type, "fixed")                                     ? FIXED
-                : !strcmp(type, "revolute") || !strcmp(type, "continuous") ? TURNS
-                : !strcmp(type, "prismatic")                               ? SLIDES
-                                                                           : 0;
-  if (!joint->kind) fail(BAD_INPUT, "joint %s is of a type that is not read: %s", joint->name, type);
+  bool turns = !strcmp(type, "revolute") || !strcmp(type, "continuous"), slides = !strcmp(type, "prismatic");
+  /* Joints of several coordinates stand still at 0. */
+  bool fixed = !strcmp(type, "fixed") || !strcmp(type, "floating") || !strcmp(type, "planar");
+  joint->kind = turns ? TURNS : slides ? SLIDES : FIXED;
+  if (!turns && !slides && !fixed) fail(BAD_INPUT, "joint %s is of a type that is not read: %s", joint->name, type);
   joint->parent = link_named(inputs, required(only_child_of(element, "parent"), "@link", joint->name));
   joint->child = link_named(inputs, required(only_child_of(element, "child"), "@link", joint->name));
   if (joint->parent == NONE || joint->child == NONE) fail(BAD_INPUT, "joint %s: no such link", joint->name);
@@ -169,7 +147,6 @@ static void require_tree(Inputs* inputs, const char* path) {
 
 /* Read the tree of links and joints; `read_collisions` follows. */
 static void read_tree(Inputs* inputs, const Entry* robot, const char* path) {
-  if (strcmp(robot->key, "robot") != 0) fail(BAD_INPUT, "%s: no URDF", path);
   size_t links = 0, joints = 0;
   for (const Entry* each = robot->child; each; each = each->next) {
     links += !strcmp(each->key, "link");
@@ -218,28 +195,21 @@ static void read_srdf(Inputs* inputs, const Entry* srdf) {
   }
 }
 
-static Entry* parsed(const char* path, Sha256* hash) {
-  File file = read_file(path, hash);
+static Entry* parsed(File file, const char* path) {
   if (strstr((const char*)file.data, "<xacro:")) fail(BAD_INPUT, "%s is a xacro", path);
-  return parse_xml((const char*)file.data, file.size, path);
+  Entry* robot = parse_xml((const char*)file.data, file.size, path);
+  if (strcmp(robot->key, "robot") != 0) fail(BAD_INPUT, "%s is no URDF or SRDF", path);
+  return robot;
 }
 
-Inputs* read_inputs(const char* urdf, const char* scene, const char* srdf, Places places) {
-  Inputs* inputs = take(1, sizeof *inputs);
-  Sha256 hash;
-  sha256_begin(&hash);
-  places.folder = folder_of(urdf);
-  const Entry* robot = parsed(urdf, &hash);
+void read_robot(Inputs* inputs, const char* urdf, const char* srdf, Files* files) {
+  const Entry* robot = parsed(next_file(files, urdf), urdf);
   read_tree(inputs, robot, urdf);
-  if (srdf) read_srdf(inputs, parsed(srdf, &hash));
+  File pairs = {NULL, 0};
+  if (srdf) pairs = next_file(files, srdf);
+  if (pairs.size) read_srdf(inputs, parsed(pairs, srdf));
   for (const Entry* link = robot->child; link; link = link->next) {
     if (strcmp(link->key, "link") != 0) continue;
-    Link* to = inputs->links + link_named(inputs, text_of(link, "@name", ""));
-    for (const Entry* each = link->child; each; each = each->next) {
-      if (!strcmp(each->key, "collision")) read_collision(to, each, places, &hash);
-    }
+    read_collisions(inputs->links + link_named(inputs, text_of(link, "@name", "")), link, urdf, files);
   }
-  read_scene(inputs, scene, &hash);
-  sha256_end(&hash, inputs->digest);
-  return inputs;
 }

@@ -8,8 +8,28 @@
 #include "proof.h"
 #include "solids.h"
 
-Proved verify(const Inputs* inputs, File file) {
-  const Certificate* certificate = read_certificate(file);
+Inputs* read_inputs(Given given, const Certificate* certificate) {
+  Inputs* inputs = take(1, sizeof *inputs);
+  Files files = {.packages = given.packages, .package_count = given.package_count};
+  const char *own[] = {certificate->robot, certificate->scene}, *paths[] = {given.robot, given.scene};
+  files.carried = certificate->carried;
+  files.left = certificate->carried_size;
+  sha256_begin(&files.hash);
+  for (int i = 0; i < 2; ++i) {
+    files.own = own[i] != NULL;
+    if (!own[i] && !paths[i]) fail(BAD_INPUT, "the certificate carries no %s: give its file", i ? "scene" : "robot");
+    if (own[i] && paths[i] && strcmp(digest_of(read_file(paths[i])), own[i]) != 0) {
+      fail(REFUSED, "it carries what it is about, and that was not read from %.200s: write - in its place", paths[i]);
+    }
+    if (i) read_scene(inputs, own[i] ? "scene.yaml" : paths[i], &files);
+    if (!i) read_robot(inputs, own[i] ? "robot.urdf" : paths[i], own[i] ? "robot.srdf" : given.srdf, &files);
+  }
+  if (files.left) fail(REFUSED, "it carries more files than it needs");
+  sha256_end(&files.hash, inputs->digest);
+  return inputs;
+}
+
+Proved verify(const Inputs* inputs, const Certificate* certificate) {
   if (memcmp(certificate->digest, inputs->digest, sizeof inputs->digest) != 0) {
     fail(REFUSED, "robot, SRDF, scene or meshes are not the files that it was written for");
   }
@@ -20,7 +40,7 @@ Proved verify(const Inputs* inputs, File file) {
 }
 
 void require_same_path(const Certificate* certificate, const char* path) {
-  File file = read_file(path, NULL);
+  File file = read_file(path);
   char* text = copied((const char*)file.data, file.size);
   size_t row = 0, joints = certificate->joint_count, ends = certificate->motions + 1;
   for (char* line = strtok(text, " \t\r\n"); line; line = strtok(NULL, " \t\r\n"), ++row) {
@@ -52,37 +72,6 @@ static void end_list(bool begun) {
   if (begun) printf("\n");
 }
 
-static int by_name(const void* a, const void* b) { return strcmp(*(char* const*)a, *(char* const*)b); }
-
-static void print_allowed(const Inputs* inputs) {
-  size_t count = 0, room = 1;
-  const Entry* allowed = inputs->allowed;
-  for (const Entry* each = allowed ? allowed->child : NULL; each; each = each->next) {
-    for (const Entry* link = each->child; link; link = link->next) ++room;
-  }
-  for (size_t i = 0; i < inputs->attached_count; ++i) {
-    const Entry* touches = inputs->attached[i].touches;
-    for (const Entry* each = touches ? touches->child : NULL; each; each = each->next) ++room;
-  }
-  char** lines = take(room, sizeof *lines);
-  for (const Entry* each = allowed ? allowed->child : NULL; each; each = each->next) {
-    for (const Entry* link = each->child; link; link = link->next) {
-      lines[count++] = joined(each->key, " with ", link->text);
-    }
-  }
-  for (size_t i = 0; i < inputs->attached_count; ++i) {
-    const Entry* touches = inputs->attached[i].touches;
-    for (const Entry* each = touches ? touches->child : NULL; each; each = each->next) {
-      bool known = obstacle_named(inputs, each->text) != NONE;
-      if (known) lines[count++] = joined(each->text, " with ", inputs->attached[i].name);
-    }
-  }
-  qsort(lines, count, sizeof *lines, by_name);
-  bool begun = false;
-  for (size_t i = 0; i < count; ++i) print_item("allowed contacts", lines[i], &begun);
-  end_list(begun);
-}
-
 /* Print what no pair of the proof speaks of. */
 static void print_not_claimed(const Proved* proved) {
   const Model* model = proved->model;
@@ -110,7 +99,11 @@ static void print_not_claimed(const Proved* proved) {
   } else {
     printf("  pairs of links: neighbours, as no SRDF disables any\n");
   }
-  print_allowed(inputs);
+  begun = false;
+  for (size_t i = 0; i < inputs->allowed_count; ++i) {
+    print_item("allowed contacts", joined(inputs->allowed[i].obstacle, " with ", inputs->allowed[i].body), &begun);
+  }
+  end_list(begun);
   begun = false;
   for (size_t i = 0; i < model->certificate->held_count; ++i) {
     char value[32];
@@ -119,7 +112,14 @@ static void print_not_claimed(const Proved* proved) {
     print_item("that other joints are where they are held", item, &begun);
   }
   if (!begun) printf("  that other joints are where they are held: at 0");
-  printf("\n  that the robot is built, calibrated, placed and controlled as the files say: and when it is where\n");
+  printf("\n");
+  const Certificate* certificate = model->certificate;
+  if (certificate->robot || certificate->scene) {
+    printf("  that what the certificate carries is the robot, or the scene, that is meant: %s%s%s\n",
+           certificate->robot ? "robot" : "", certificate->robot && certificate->scene ? ", " : "",
+           certificate->scene ? "scene" : "");
+  }
+  printf("  that the robot is built, calibrated, placed and controlled as the files say: and when it is where\n");
   if (proved->opened) printf("  what is inside of surfaces with holes: %zu\n", proved->opened);
 }
 

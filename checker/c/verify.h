@@ -11,7 +11,7 @@ typedef struct {
 } Proved;
 
 /* What a certificate proves about its inputs; fails if it does not. */
-Proved verify(const Inputs* inputs, File certificate);
+Proved verify(const Inputs* inputs, const Certificate* certificate);
 
 /* Refuse unless the waypoints of a CSV, whose first row names the joints, are those of the certificate. */
 void require_same_path(const Certificate* certificate, const char* path);

@@ -1,44 +1,12 @@
-#include <stdlib.h>
 #include <string.h>
 
-#include "tree.h"
+#include "base.h"
 
 enum { DEEPEST = 200, MOST_ATTRIBUTES = 100 };
 
 typedef struct {
   const char *at, *file;
 } Reader;
-
-Entry* append(Entry* parent, const char* key, const char* text, int kind) {
-  Entry* entry = take(1, sizeof *entry);
-  *entry = (Entry){.key = key, .text = text, .kind = kind};
-  if (parent->last) {
-    parent->last->next = entry;
-  } else {
-    parent->child = entry;
-  }
-  parent->last = entry;
-  return entry;
-}
-
-Entry* child_of(const Entry* entry, const char* key) {
-  Entry* each = entry ? entry->child : NULL;
-  while (each && !(each->key && !strcmp(each->key, key))) each = each->next;
-  return each;
-}
-
-Entry* only_child_of(const Entry* entry, const char* key) {
-  Entry* found = child_of(entry, key);
-  for (const Entry* each = found ? found->next : NULL; each; each = each->next) {
-    if (each->key && !strcmp(each->key, key)) fail(BAD_INPUT, "more than one <%s> in <%s>", key, entry->key);
-  }
-  return found;
-}
-
-const char* text_of(const Entry* entry, const char* key, const char* otherwise) {
-  const Entry* found = child_of(entry, key);
-  return found ? found->text : otherwise;
-}
 
 /* Text without its entities, of which XML itself defines five. */
 static char* plain(Reader* in, const char* text, size_t size) {

@@ -1,7 +1,6 @@
-#include <stdlib.h>
 #include <string.h>
 
-#include "tree.h"
+#include "base.h"
 
 enum { DEEPEST = 40 };
 
@@ -79,17 +78,21 @@ static char* key_of(Reader* in, bool in_brackets) {
   return key;
 }
 
-static int by_key(const void* a, const void* b) { return strcmp((*(Entry* const*)a)->key, (*(Entry* const*)b)->key); }
-
-static void refuse_equal_keys(const Reader* in, const Entry* mapping) {
-  size_t count = 0, i = 0;
-  for (const Entry* each = mapping->child; each; each = each->next) ++count;
-  Entry** sorted = take(count + 1, sizeof *sorted);
-  for (Entry* each = mapping->child; each; each = each->next) sorted[i++] = each;
-  qsort(sorted, count, sizeof *sorted, by_key);
-  for (i = 1; i < count; ++i) {
-    if (!strcmp(sorted[i - 1]->key, sorted[i]->key)) fail(BAD_INPUT, "%s: twice: %.40s", in->file, sorted[i]->key);
+/* Give a list of texts all of them, for lists of numbers. */
+static void join_items(Entry* list) {
+  size_t size = 1;
+  for (const Entry* each = list->child; each; each = each->next) {
+    if (each->kind != SCALAR) return;
+    size += strlen(each->text) + 1;
   }
+  char *text = take(size, 1), *to = text;
+  for (const Entry* each = list->child; each; each = each->next) {
+    size = strlen(each->text);
+    memcpy(to, each->text, size);
+    to[size] = each->next ? ' ' : 0;
+    to += size + 1;
+  }
+  list->text = text;
 }
 
 static void brackets(Reader* in, Entry* parent, const char* key) {
@@ -115,7 +118,8 @@ static void brackets(Reader* in, Entry* parent, const char* key) {
     }
   }
   ++in->at;
-  if (mapping) refuse_equal_keys(in, entry);
+  if (mapping) refuse_equal_keys(entry, in->file);
+  if (!mapping) join_items(entry);
   --in->depth;
 }
 
@@ -168,7 +172,8 @@ static void block(Reader* in, Entry* parent, const char* key) {
     value(in, entry, name, indent, list);
   }
   if (*in->at && column(in) > indent) broken(in, "an indentation");
-  if (!list) refuse_equal_keys(in, entry);
+  if (!list) refuse_equal_keys(entry, in->file);
+  if (list) join_items(entry);
   --in->depth;
 }
 

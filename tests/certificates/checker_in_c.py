@@ -83,6 +83,4 @@ class ManyChecks:
         self._process.stdin.flush()
         code = self._process.stdout.read(1)
         assert code, "the checker in C stopped"
-        if letter == b"R" and code == b"\x00":
-            self._process.stdout.read(32)
         return code[0]
