@@ -43,11 +43,12 @@ def program(name):
         made = Path(tempfile.mkdtemp()) / name
         line = [*compiler, *STRICT, f"-I{SOURCES}", *map(str, sources), "-lm", "-o", str(made)]
         done = subprocess.run(line, capture_output=True, text=True)
-        assert "warning:" not in done.stderr and "error:" not in done.stderr, done.stderr
         if done.returncode == 0:
             os.replace(shutil.copy(made, f"{kept}.{os.getpid()}"), kept)
             return kept
-    pytest.skip("no compiler of C: set CC, or install ziglang")
+    if not compilers():
+        pytest.skip("no compiler of C: set CC, or install ziglang")
+    return pytest.fail(done.stderr)
 
 
 class ManyChecks:

@@ -119,7 +119,7 @@ def test_closed_meshes_are_solid(suffix, radius, many, tmp_path):
 
 
 TEXTS = {
-    "blocks": "obstacles:   # a comment\n  a b:\n    shape: box\n    size:\n    - 1\n    - 2\n    - 3\n    xyz: [0, 0,\n  -9]\n",
+    "blocks": "obstacles: # x\n  a b:\n    shape: box\n    size:\n    - 1\n    - 2\n    - 3\n    xyz: [0, 0,\n  -9]\n",
     "quotes": "'name': 'it''s # none'\nobstacles: {\"a\": {shape: sphere, radius: 1e-2, xyz: [+9., .5, 0]}}\n",
     "list": "obstacles:\n- {name: a, box: {size: [1, 1, 1]}, xyz: [9, 0, 0]}\n-\n  sphere: 0.1\n  xyz: [8, 0, 0]\n",
     "nothing": "# only this\r\n\r\nallowed:\r\nobstacles: {}\r\n",
@@ -135,7 +135,6 @@ BROKEN = (
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_both_read_a_scene_alike(name, many, tmp_path):
-    sources, _ = sources_in(tmp_path, TEXTS[name]), None
     _, data = certificate_in(tmp_path, "obstacles: {}\n", [[0.0], [0.1]])
     sources = sources_in(tmp_path, TEXTS[name])
     assert many.read(sources.robot, sources.scene) == ACCEPTED
