@@ -9,8 +9,7 @@ import trimesh
 from evenroad_verify.command import main
 from tests.certificates.checker_in_c import ACCEPTED, BAD_INPUT, REFUSED, ManyChecks, program
 from tests.certificates.small import certificate_in, inputs_of, sources_in
-from tests.certificates.test_checker import CHANGES
-from tests.certificates.written import accepts, box_reach, joined, parts_of, shelf, with_digest
+from tests.certificates.written import CHANGES, accepts, box_reach, joined, parts_of, shelf, with_digest
 
 WALL = "obstacles:\n  wall: {shape: box, size: [0.2, 0.2, 0.2], xyz: [1.25, 0.0, 0.0]}\n"
 
