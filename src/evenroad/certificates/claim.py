@@ -50,7 +50,8 @@ class Tree:
         links = [(parent, column, joint.kind == "prismatic") for parent, joint, _, column, _, _ in self.moved]
         poses = [np.concatenate([at.matrix[:3, :3].ravel(), at.xyz, joint.axis]) for _, joint, at, *_ in self.moved]
         rules = [(factor, offset) for *_, factor, offset in self.moved]
-        return JointTables(np.array(links, dtype=np.int64), np.array(poses, dtype=float), np.array(rules, dtype=float))
+        rows = np.array(links, dtype=np.int64).reshape(-1, 3), np.array(poses, dtype=float).reshape(-1, 15)
+        return JointTables(*rows, np.array(rules, dtype=float).reshape(-1, 2))
 
 
 @dataclass(frozen=True)

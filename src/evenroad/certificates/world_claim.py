@@ -129,7 +129,7 @@ def world_claim(world: ArmWorld, shapes: Sequence[Shape] | None) -> WorldClaim:
     robot, scene = world.robot, world.scene
     still = {name: value for name, value in held_values(robot).items() if value != 0.0}
     tree = tree_of(robot, Claimed(robot.group, still, None, frozenset(), world.clearance, dict(robot.padding)))
-    bodies = [*_of_file(shapes, robot, tree), *_of_world(robot, tree, {each.link for each in shapes or ()})]
+    bodies = [*bodies_of(shapes or (), tree), *_of_world(robot, tree, {each.link for each in shapes or ()})]
     bodied = {body.owner.name for body in bodies}
     bodies += [_body(Owner(each.name, True), 0, each.body, IDENTITY, each.clearance) for each in scene.obstacles]
     padding = dict(robot.padding)
@@ -145,9 +145,9 @@ def world_claim(world: ArmWorld, shapes: Sequence[Shape] | None) -> WorldClaim:
     return WorldClaim(tree, tuple(bodies), tuple(pairs), kinds)
 
 
-def _of_file(shapes: Sequence[Shape] | None, robot: Robot, tree: Tree) -> Iterable[Body]:
-    """Yield the bodies of a robot's file."""
-    for shape in shapes or ():
+def bodies_of(shapes: Iterable[Shape], tree: Tree) -> Iterable[Body]:
+    """Yield the bodies of shapes, each in its link's frame."""
+    for shape in shapes:
         frame, at = tree.placement[shape.link]
         yield _body(Owner(shape.link), frame, shape, at)
 

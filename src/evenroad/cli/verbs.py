@@ -34,6 +34,7 @@ VERBS = {
         "evenroad.cli.certify_path:CertifyPath",
         "prove another planner's path free, or find where it first touches",
     ),
+    "pairs": ("evenroad.cli.pairs:Pairs", "show whether links that are not tested ever touch, with proofs"),
     "robot": ("evenroad.cli.robot:Robot", "show an arm's joints, limits and shapes, and how fast it is checked"),
     "generate": (
         "evenroad.cli.generate:Generate",
@@ -55,7 +56,7 @@ ENTRY_POINTS = "evenroad.verbs"
 
 GROUPS = {
     "a path, from the plan to the robot": (
-        ("plan", "view", "send", "run", "certify-path", "roadmap", "robot", "generate", "demo"),
+        ("plan", "view", "send", "run", "certify-path", "roadmap", "robot", "pairs", "generate", "demo"),
         (
             "evenroad plan box-reach.yaml --robot ur5 --start home --goal inside",
             "evenroad view box-reach.json --html reach.html",
