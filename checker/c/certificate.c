@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char MAGIC[] = "evenroad certificate 1";
+static const char MAGIC[] = "evenroad certificate 1\n", OF_NO_PATH[] = "evenroad certificate of no path 1\n";
 
-enum { ONCE = 8, LONGEST_HEADER = 1 << 16, MOST_MOTIONS = 1 << 20 };
+/* Lines that may stand once: of all certificates, of paths, of no path, and those that may be left out. */
+enum { INPUTS, DEGREE, MOTIONS, ANSWERS, DIRECTIONS, GOALS, BALLS, WITNESSES, CLEARANCE, ROBOT, SCENE, ONCE };
+enum { LONGEST_HEADER = 1 << 16, MOST_MOTIONS = 1 << 20 };
 
 static const double FARTHEST = 1000;
 
@@ -52,10 +54,32 @@ static void read_digest(Certificate* to, const char* text) {
   }
 }
 
+/* A count of answers, and the columns behind it. */
+static Tree tree_of(char* text) {
+  Tree tree = {.columns = take(strlen(text) / 2 + 1, sizeof *tree.columns)};
+  char* next = strchr(text, ' ');
+  if (next) *next++ = 0;
+  tree.answer_count = count_of(text);
+  while (next) {
+    text = next;
+    next = strchr(text, ' ');
+    if (next) *next++ = 0;
+    tree.columns[tree.column_count++] = count_of(text);
+  }
+  return tree;
+}
+
 /* Read one line; those that may stand once only are counted in `seen`. */
 static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
-  static const char* const once[ONCE] = {"inputs",     "degree",    "motions", "answers",
-                                         "directions", "clearance", "robot",   "scene"};
+  static const char* const once[ONCE] = {"inputs", "degree",    "motions",   "answers", "directions", "goals",
+                                         "balls",  "witnesses", "clearance", "robot",   "scene"};
+  size_t* counts[ONCE] = {[DEGREE] = &to->degree,
+                          [MOTIONS] = &to->motions,
+                          [ANSWERS] = &to->answer_count,
+                          [DIRECTIONS] = &to->direction_count,
+                          [GOALS] = &to->goals,
+                          [BALLS] = &to->ball_count,
+                          [WITNESSES] = &to->witness_count};
   char* blank = strchr(line, ' ');
   if (!blank) fail(REFUSED, "a line that is not known: %.60s", line);
   *blank = 0;
@@ -64,14 +88,11 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
     if (strcmp(line, once[i]) != 0) continue;
     if (seen[i]) fail(REFUSED, "said twice: %s", line);
     seen[i] = true;
-    if (i == 0) read_digest(to, value);
-    if (i == 1) to->degree = count_of(value);
-    if (i == 2) to->motions = count_of(value);
-    if (i == 3) to->answer_count = count_of(value);
-    if (i == 4) to->direction_count = count_of(value);
-    if (i == 5) to->clearance = length_of(value);
-    if (i == 6) to->robot = value;
-    if (i == 7) to->scene = value;
+    if (counts[i]) *counts[i] = count_of(value);
+    if (i == INPUTS) read_digest(to, value);
+    if (i == CLEARANCE) to->clearance = length_of(value);
+    if (i == ROBOT) to->robot = value;
+    if (i == SCENE) to->scene = value;
     return;
   }
   if (!strcmp(line, "joint")) {
@@ -79,6 +100,8 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
       if (!strcmp(to->joints[i], value)) fail(REFUSED, "joint %.60s is named twice", value);
     }
     to->joints[to->joint_count++] = value;
+  } else if (!strcmp(line, "cells") && to->of_no_path) {
+    to->trees[to->tree_count++] = tree_of(value);
   } else if (!strcmp(line, "held")) {
     add_named(to->held, &to->held_count, named(value));
   } else if (!strcmp(line, "padding")) {
@@ -90,10 +113,18 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
   }
 }
 
-static void require_counts(const Certificate* certificate) {
-  if (certificate->degree != 1 && certificate->degree != 2) fail(REFUSED, "degree must be 1 or 2");
+static void require_counts(const Certificate* certificate, const bool seen[ONCE]) {
+  for (int i = 0; i <= WITNESSES; ++i) {
+    bool needed = i == INPUTS || (i >= GOALS) == certificate->of_no_path;
+    if (seen[i] != needed) fail(REFUSED, "a line is missing, or is of another kind of certificate");
+  }
   if (!certificate->joint_count) fail(REFUSED, "no joint is named");
-  if (!certificate->motions || certificate->motions >= MOST_MOTIONS) fail(REFUSED, "no motion, or too many");
+  if (certificate->of_no_path) {
+    if (!certificate->goals || !certificate->tree_count) fail(REFUSED, "no goal, or no cells");
+  } else {
+    if (certificate->degree != 1 && certificate->degree != 2) fail(REFUSED, "degree must be 1 or 2");
+    if (!certificate->motions || certificate->motions >= MOST_MOTIONS) fail(REFUSED, "no motion, or too many");
+  }
 }
 
 /* Refuse carried files that are cut off, or that no line announces. */
@@ -109,19 +140,14 @@ static void require_carried(const Certificate* certificate) {
   }
 }
 
-Certificate* read_certificate(File file) {
-  Certificate* to = take(1, sizeof *to);
-  const char* start = (const char*)file.data;
-  size_t size = sizeof MAGIC - 1;
-  if (file.size <= size || memcmp(start, MAGIC, size) != 0 || start[size] != '\n') fail(REFUSED, "no certificate");
-  const char* end = strstr(start + size, "\n\n");
-  if (!end || end - start > LONGEST_HEADER) fail(REFUSED, "a header without end");
-  char* text = copied(start + size + 1, (size_t)(end - start) > size ? (size_t)(end - start) - size : 0);
-  size_t lines = 0;
+/* Read the lines of a header. */
+static void read_header(Certificate* to, char* text) {
+  size_t lines = 1;
   for (const char* each = text; *each; ++each) lines += *each == '\n';
-  to->joints = take(lines + 1, sizeof *to->joints);
-  to->held = take(lines + 1, sizeof *to->held);
-  to->padding = take(lines + 1, sizeof *to->padding);
+  to->joints = take(lines, sizeof *to->joints);
+  to->held = take(lines, sizeof *to->held);
+  to->padding = take(lines, sizeof *to->padding);
+  to->trees = take(lines, sizeof *to->trees);
   bool seen[ONCE] = {false};
   while (*text) {
     char* line = text;
@@ -129,28 +155,57 @@ Certificate* read_certificate(File file) {
     if (*text) *text++ = 0;
     read_line(to, line, seen);
   }
-  for (int i = 0; i < 5; ++i) {
-    if (!seen[i]) fail(REFUSED, "a line is missing");
-  }
-  require_counts(to);
-  const uint8_t* body = (const uint8_t*)end + 2;
-  uint64_t left = file.size - (size_t)(body - file.data), numbers = 0;
-  to->points = to->degree * to->motions + 1;
-  numbers = (uint64_t)to->points * to->joint_count; /* below 2^51: counts have 9 digits, a header a megabyte */
-  uint64_t packed = (to->answer_count + 2) / 3;
-  uint64_t own = 8 * numbers + packed + 12 * (uint64_t)to->direction_count;
-  if (own > left) fail(REFUSED, "it is cut off");
-  to->carried = body + own;
-  to->carried_size = left - own;
-  require_carried(to);
+  require_counts(to, seen);
+}
+
+/* The next bytes of a body, of `count` items; no product overflows: counts have 9 digits, a header 2^16 bytes. */
+static const uint8_t* next_bytes(const uint8_t** body, uint64_t* left, uint64_t count, uint64_t size) {
+  const uint8_t* from = *body;
+  if (count * size > *left) fail(REFUSED, "it is cut off");
+  *body += count * size;
+  *left -= count * size;
+  return from;
+}
+
+size_t bytes_of_answer(const Certificate* certificate, const Tree* tree) {
+  return 1 + tree->column_count + certificate->witness_count > 256 ? 2 : 1;
+}
+
+static void read_values(Certificate* to, const uint8_t* data) {
+  size_t numbers = to->points * to->joint_count;
   to->values = take(numbers, sizeof *to->values);
   for (size_t i = 0; i < numbers; ++i) {
-    uint64_t bits = little_endian(body + 8 * i, 8);
+    uint64_t bits = little_endian(data + 8 * i, 8);
     memcpy(to->values + i, &bits, sizeof bits);
     if (!(fabs(to->values[i]) <= FARTHEST)) fail(REFUSED, "a value that is no number or too large");
   }
-  to->answers = body + 8 * numbers;
-  to->directions = to->answers + packed;
+}
+
+Certificate* read_certificate(File file) {
+  Certificate* to = take(1, sizeof *to);
+  const char* text = (const char*)file.data;
+  to->of_no_path = !strncmp(text, OF_NO_PATH, sizeof OF_NO_PATH - 1);
+  size_t size = to->of_no_path ? sizeof OF_NO_PATH - 1 : sizeof MAGIC - 1;
+  if (!to->of_no_path && strncmp(text, MAGIC, size) != 0) fail(REFUSED, "no certificate");
+  const char* end = strstr(text + size - 1, "\n\n");
+  if (!end || end - text > LONGEST_HEADER) fail(REFUSED, "a header without end");
+  size_t length = (size_t)(end - text);
+  read_header(to, copied(text + size, length > size ? length - size : 0));
+  const uint8_t* body = file.data + length + 2;
+  uint64_t left = file.size - length - 2, packed = (to->answer_count + 2) / 3;
+  to->points = to->of_no_path ? 1 + to->goals : to->degree * to->motions + 1;
+  read_values(to, next_bytes(&body, &left, to->points, 8 * to->joint_count));
+  to->answers = next_bytes(&body, &left, packed, 1);
+  to->directions = next_bytes(&body, &left, to->direction_count, 12);
+  to->balls = next_bytes(&body, &left, to->ball_count, 18);
+  to->witnesses = next_bytes(&body, &left, to->witness_count, 4);
+  for (size_t i = 0; i < to->tree_count; ++i) {
+    Tree* tree = to->trees + i;
+    tree->answers = next_bytes(&body, &left, tree->answer_count, bytes_of_answer(to, tree));
+  }
+  to->carried = body;
+  to->carried_size = left;
+  require_carried(to);
   for (size_t i = 0; i < 3 * packed; ++i) {
     int answer = answer_at(to, i);
     if (to->answers[i / 3] >= 216 || (i >= to->answer_count && answer)) fail(REFUSED, "answers are 0 to 5");
@@ -163,11 +218,17 @@ int answer_at(const Certificate* certificate, size_t index) {
   return certificate->answers[index / 3] / steps[index % 3] % 6;
 }
 
+float float_at(const uint8_t* data) {
+  uint32_t bits = (uint32_t)little_endian(data, 4);
+  float number = 0;
+  memcpy(&number, &bits, sizeof bits);
+  return number;
+}
+
 Vector direction_at(const Certificate* certificate, size_t index) {
   float numbers[3];
   for (int i = 0; i < 3; ++i) {
-    uint32_t bits = (uint32_t)little_endian(certificate->directions + 12 * index + 4 * (size_t)i, 4);
-    memcpy(numbers + i, &bits, sizeof bits);
+    numbers[i] = float_at(certificate->directions + 12 * index + 4 * (size_t)i);
     if (!(fabsf(numbers[i]) <= 2)) fail(REFUSED, "a direction that is no number or too long");
   }
   Vector direction = {numbers[0], numbers[1], numbers[2]};

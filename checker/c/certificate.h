@@ -1,4 +1,4 @@
-/* A certificate: its header, its points, its answers and its directions. */
+/* A certificate of a path, or that there is none: its header, its points, and what follows them. */
 #ifndef EVENROAD_CERTIFICATE_H
 #define EVENROAD_CERTIFICATE_H
 
@@ -10,8 +10,15 @@ typedef struct {
   double value;
 } Named;
 
+/* Cells of some columns of the points, and an answer to each; of a certificate that there is no path. */
+typedef struct {
+  size_t *columns, column_count, answer_count;
+  const uint8_t* answers;
+} Tree;
+
 typedef struct {
   uint8_t digest[32];
+  bool of_no_path;
   const char** joints;
   Named *held, *padding;
   size_t joint_count, held_count, padding_count;
@@ -20,11 +27,16 @@ typedef struct {
   double* values; /* of a point, one for each joint */
   const uint8_t *answers, *directions, *carried;
   size_t carried_size;
+  Tree* trees; /* of a certificate that there is no path; its points are the start and the goals */
+  size_t goals, ball_count, witness_count, tree_count;
+  const uint8_t *balls, *witnesses;
   const char *robot, *scene; /* digests of the files of which carried ones were made, or NULL */
 } Certificate;
 
 Certificate* read_certificate(File file);
+size_t bytes_of_answer(const Certificate* certificate, const Tree* tree);
 int answer_at(const Certificate* certificate, size_t index);
+float float_at(const uint8_t* data);
 Vector direction_at(const Certificate* certificate, size_t index); /* of length 1 */
 
 #endif

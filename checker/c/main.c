@@ -49,9 +49,16 @@ int main(int count, char** words) {
   if (code == BAD_INPUT) fprintf(stderr, "evenroad-verify: %s\n", failure);
   if (!code) {
     const Certificate* certificate = read_certificate(read_file(asked.certificate));
-    Proved proved = verify(read_inputs(asked.given, certificate), certificate);
-    if (asked.path) require_same_path(certificate, asked.path);
-    print_proved(&proved);
+    const Inputs* inputs = read_inputs(asked.given, certificate);
+    if (certificate->of_no_path) {
+      NoPath shown = verify_no_path(inputs, certificate);
+      if (asked.path) fail(REFUSED, "it proves that there is no path");
+      print_no_path(&shown);
+    } else {
+      Proved proved = verify(inputs, certificate);
+      if (asked.path) require_same_path(certificate, asked.path);
+      print_proved(&proved);
+    }
   }
   release(NULL);
   return code;

@@ -37,10 +37,10 @@ static Frame value_of(const Inputs* inputs, const Certificate* certificate, cons
   return frame;
 }
 
-static double largest_value(const Certificate* certificate, const Frame* frame) {
+static double largest_value(const Model* model, const Frame* frame) {
   double largest = 0;
-  for (size_t i = 0; i < certificate->points; ++i) {
-    double value = certificate->values[i * certificate->joint_count + frame->column];
+  for (size_t i = 0; i < model->extreme_count; ++i) {
+    double value = model->extremes[i * model->certificate->joint_count + frame->column];
     largest = fmax(largest, fabs(frame->multiplier * value + frame->offset));
   }
   return largest;
@@ -84,7 +84,7 @@ static Place behind(Model* model, const Place* place, const Joint* joint) {
   }
   frame.parent = place->frame;
   frame.fixed = fixed;
-  frame.length = length(fixed.at) + (frame.slides ? largest_value(model->certificate, &frame) : 0);
+  frame.length = length(fixed.at) + (frame.slides ? largest_value(model, &frame) : 0);
   model->frames[model->frame_count] = frame;
   return (Place){joint->child, model->frame_count++, identity()};
 }
@@ -128,24 +128,48 @@ static void refuse_unknown_names(const Inputs* inputs, const Certificate* certif
   }
 }
 
-static void require_within(const Certificate* certificate, size_t column, double lower, double upper) {
-  if (upper - lower > NO_RANGE) return;
-  for (size_t i = 0; i < certificate->points; ++i) {
-    double value = certificate->values[i * certificate->joint_count + column];
-    if (!(value >= lower - LIMIT_TOLERANCE && value <= upper + LIMIT_TOLERANCE)) {
-      fail(REFUSED, "%.60s = %.9g leaves its limits", certificate->joints[column], value);
+bool range_of(const Inputs* inputs, const Certificate* certificate, size_t column, double range[2]) {
+  const Joint* joint = inputs->joints + joint_named(inputs, certificate->joints[column]);
+  double limits[2][2] = {{joint->lower, joint->upper}, {0, 2 * NO_RANGE}};
+  if (!joint->limited) limits[0][1] = limits[0][0] + 2 * NO_RANGE;
+  numbers_of(inputs->limits, certificate->joints[column], limits[1], 2, "limits");
+  range[0] = -INFINITY;
+  range[1] = INFINITY;
+  for (int i = 0; i < 2; ++i) {
+    if (limits[i][1] - limits[i][0] > NO_RANGE) continue;
+    range[0] = fmax(range[0], limits[i][0] - LIMIT_TOLERANCE);
+    range[1] = fmin(range[1], limits[i][1] + LIMIT_TOLERANCE);
+  }
+  return range[0] > -INFINITY;
+}
+
+static void require_limits(const Inputs* inputs, const Certificate* certificate) {
+  for (size_t column = 0; column < certificate->joint_count; ++column) {
+    double range[2];
+    range_of(inputs, certificate, column, range);
+    for (size_t i = 0; i < certificate->points; ++i) {
+      double value = certificate->values[i * certificate->joint_count + column];
+      if (range[0] <= value && value <= range[1]) continue;
+      fail(REFUSED, "%.60s leaves its limits", certificate->joints[column]);
     }
   }
 }
 
-static void require_limits(const Inputs* inputs, const Certificate* certificate) {
+/* Find the largest values of the joints: those of the points or, if they may be anywhere, the ends of their ranges. */
+static void find_extremes(Model* model) {
+  const Certificate* certificate = model->certificate;
+  model->extremes = certificate->values;
+  model->extreme_count = certificate->points;
+  if (!certificate->of_no_path) return;
+  double* ends = take(2 * certificate->joint_count, sizeof *ends);
   for (size_t i = 0; i < certificate->joint_count; ++i) {
-    const Joint* joint = inputs->joints + joint_named(inputs, certificate->joints[i]);
-    if (joint->limited) require_within(certificate, i, joint->lower, joint->upper);
-    double range[2];
-    bool narrowed = numbers_of(inputs->limits, certificate->joints[i], range, 2, "limits");
-    if (narrowed) require_within(certificate, i, range[0], range[1]);
+    double range[2] = {-PI, PI};
+    if (!range_of(model->inputs, certificate, i, range)) range[0] = -(range[1] = PI);
+    ends[i] = range[0];
+    ends[certificate->joint_count + i] = range[1];
   }
+  model->extremes = ends;
+  model->extreme_count = 2;
 }
 
 /* The largest number of joints from the root to a link. */
@@ -166,8 +190,8 @@ static void require_bounded(const Model* model) {
   const Certificate* certificate = model->certificate;
   double largest = 0, factor = 1, robot = 0, farthest = 0, planes = 0;
   double* chain = take(model->frame_count, sizeof *chain);
-  for (size_t i = 0; i < certificate->points * certificate->joint_count; ++i) {
-    largest = fmax(largest, fabs(certificate->values[i]));
+  for (size_t i = 0; i < model->extreme_count * certificate->joint_count; ++i) {
+    largest = fmax(largest, fabs(model->extremes[i]));
   }
   for (size_t i = 1; i < model->frame_count; ++i) {
     chain[i] = chain[model->frames[i].parent] + model->frames[i].length;
@@ -197,6 +221,7 @@ Model* model_of(const Inputs* inputs, const Certificate* certificate) {
   model->bodies = take(inputs->link_count + inputs->attached_count + 1, sizeof *model->bodies);
   refuse_unknown_names(inputs, certificate);
   require_limits(inputs, certificate);
+  find_extremes(model);
   walk(model);
   find_allowed(model);
   find_pairs(model);

@@ -40,10 +40,18 @@ typedef struct {
   Frame* frames;
   Body* bodies;
   Pair* pairs;
+  Solid* obstacles;
+  const double* extremes; /* of the joints, as rows like the points */
+  size_t extreme_count;
   size_t* order; /* of links, depth first */
   size_t* group; /* of each body, the first body of its node against obstacles */
   size_t frame_count, body_count, pair_count;
 } Model;
+
+#define PI 3.14159265358979323846
+
+/* The range of a column in the URDF and the scene; false if it has none. */
+bool range_of(const Inputs* inputs, const Certificate* certificate, size_t column, double range[2]);
 
 Model* model_of(const Inputs* inputs, const Certificate* certificate);
 

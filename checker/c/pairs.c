@@ -94,7 +94,7 @@ static bool may_touch(const Model* model, const Body* held, const Body* other) {
   return false;
 }
 
-static bool is_left_out(const Model* model, const Body* a, const Body* b) {
+bool is_left_out(const Model* model, const Body* a, const Body* b) {
   const Inputs* inputs = model->inputs;
   if (a->frame == b->frame || may_touch(model, a, b) || may_touch(model, b, a)) return true;
   if (!inputs->disabled_count) return is_next_above(model, a, b) || is_next_above(model, b, a);
@@ -107,11 +107,11 @@ void find_pairs(Model* model) {
   size_t count = model->body_count;
   Pose here = identity();
   Solid** obstacles = take(inputs->obstacle_count + 1, sizeof *obstacles);
-  Solid* solids = take(inputs->obstacle_count + 1, sizeof *solids);
+  model->obstacles = take(inputs->obstacle_count + 1, sizeof *model->obstacles);
   for (size_t i = 0; i < inputs->obstacle_count; ++i) {
     Pose pose = composed(&here, &inputs->obstacles[i].shape.pose);
-    solids[i] = solid_of(&inputs->obstacles[i].shape, &pose);
-    obstacles[i] = solids + i;
+    model->obstacles[i] = solid_of(&inputs->obstacles[i].shape, &pose);
+    obstacles[i] = model->obstacles + i;
   }
   model->pairs = take(count + count * count / 2 + 1, sizeof *model->pairs);
   model->group = take(count + 1, sizeof *model->group);

@@ -8,4 +8,7 @@
 void find_allowed(Model* model);
 void find_pairs(Model* model);
 
+/* Tell whether no certificate speaks of two bodies of the robot. */
+bool is_left_out(const Model* model, const Body* a, const Body* b);
+
 #endif

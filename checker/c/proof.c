@@ -21,6 +21,20 @@ typedef struct {
   double strays;      /* its bound of the acceleration */
 } Motion;
 
+void place_frame(const Model* model, size_t i, double value, Moved* moved) {
+  const Frame* frame = model->frames + i;
+  Pose before = composed(&moved[frame->parent].pose, &frame->fixed);
+  value = frame->multiplier * value + frame->offset;
+  moved[i].axis = turned(&before, frame->axis);
+  if (frame->slides) {
+    moved[i].pose = before;
+    moved[i].pose.at = sum(before.at, scaled(value, moved[i].axis));
+  } else {
+    Pose turn = pose_of_turn(frame->axis, value);
+    moved[i].pose = composed(&before, &turn);
+  }
+}
+
 void place_frames(const Model* model, size_t motion, double middle, double half, Moved* moved) {
   const Certificate* certificate = model->certificate;
   size_t joints = certificate->joint_count;
@@ -35,21 +49,12 @@ void place_frames(const Model* model, size_t motion, double middle, double half,
     to->rate = frame->multiplier * 2 * ((1 - t) * (p1 - p0) + t * (p2 - p1));
     to->change = certificate->degree == 2 ? frame->multiplier * 2 * (p0 - 2 * p1 + p2) : 0;
     to->fastest = fabs(to->rate) + half * fabs(to->change);
-    Pose before = composed(&moved[frame->parent].pose, &frame->fixed);
-    value = frame->multiplier * value + frame->offset;
-    to->axis = turned(&before, frame->axis);
-    if (frame->slides) {
-      to->pose = before;
-      to->pose.at = sum(before.at, scaled(value, to->axis));
-    } else {
-      Pose turn = pose_of_turn(frame->axis, value);
-      to->pose = composed(&before, &turn);
-    }
+    place_frame(model, i, value, moved);
   }
 }
 
 /* The last frame that both chains have. */
-static size_t shared(const Model* model, size_t a, size_t b) {
+size_t shared(const Model* model, size_t a, size_t b) {
   while (a != b) {
     if (a > b) {
       a = model->frames[a].parent;

@@ -14,6 +14,12 @@ typedef struct {
 /* Place all frames at the part `middle` of a motion, with rates in the stretch `half` to both sides. */
 void place_frames(const Model* model, size_t motion, double middle, double half, Moved* moved);
 
+/* Place one frame, by the value of its column, behind those above it. */
+void place_frame(const Model* model, size_t frame, double value, Moved* moved);
+
+/* The last frame that the chains of two others have in common. */
+size_t shared(const Model* model, size_t a, size_t b);
+
 /* Answer all tasks, or refuse; return the smallest gap that a step of the proof leaves. */
 double prove(Model* model);
 

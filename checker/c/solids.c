@@ -24,7 +24,7 @@ static int meets(Vector a, Vector b, Vector c, Vector way) {
 }
 
 /* Tell whether a point is inside of the closed piece of a mesh that begins with the triangle `piece`. */
-static bool is_inside(Vector point, const Solid* solid, size_t piece) {
+bool is_inside(Vector point, const Solid* solid, size_t piece) {
   const Mesh* mesh = solid->shape->mesh;
   for (size_t i = 0; i < sizeof WAYS / sizeof *WAYS; ++i) {
     Vector way = scaled(1 / length(WAYS[i]), WAYS[i]);
@@ -41,7 +41,7 @@ static bool is_inside(Vector point, const Solid* solid, size_t piece) {
   fail(REFUSED, "no ray shows whether a body is inside of another one");
 }
 
-static bool is_surface(const Solid* solid) { return solid->shape->kind == MESH && !solid->shape->convex; }
+bool is_surface(const Solid* solid) { return solid->shape->kind == MESH && !solid->shape->convex; }
 
 typedef struct {
   Vector low, high;

@@ -73,8 +73,7 @@ static void end_list(bool begun) {
 }
 
 /* Print what no pair of the proof speaks of. */
-static void print_not_claimed(const Proved* proved) {
-  const Model* model = proved->model;
+static void print_not_claimed(const Model* model) {
   const Inputs* inputs = model->inputs;
   bool begun = false;
   printf("not claimed:\n");
@@ -120,7 +119,14 @@ static void print_not_claimed(const Proved* proved) {
            certificate->scene ? "scene" : "");
   }
   printf("  that the robot is built, calibrated, placed and controlled as the files say: and when it is where\n");
-  if (proved->opened) printf("  what is inside of surfaces with holes: %zu\n", proved->opened);
+}
+
+static void print_kept(const Certificate* certificate) {
+  if (certificate->clearance > 0) printf(", %g m from all obstacles", certificate->clearance);
+  for (size_t i = 0; i < certificate->padding_count; ++i) {
+    printf(", %s %g m more", certificate->padding[i].name, certificate->padding[i].value);
+  }
+  printf("\n");
 }
 
 static bool is_straight(const Certificate* certificate) {
@@ -138,11 +144,7 @@ void print_proved(const Proved* proved) {
   size_t last = (certificate->points - 1) * certificate->joint_count;
   printf("PROVED: %zu %s touch nothing", certificate->motions,
          is_straight(certificate) ? "straight motions" : "curves");
-  if (certificate->clearance > 0) printf(", %g m from all obstacles", certificate->clearance);
-  for (size_t i = 0; i < certificate->padding_count; ++i) {
-    printf(", %s %g m more", certificate->padding[i].name, certificate->padding[i].value);
-  }
-  printf("\n");
+  print_kept(certificate);
   for (size_t i = 0; i < certificate->joint_count; ++i) {
     double from = certificate->values[i], to = certificate->values[last + i];
     printf("  %s: from %.6g to %.6g\n", certificate->joints[i], from, to);
@@ -157,5 +159,36 @@ void print_proved(const Proved* proved) {
     }
     printf(" - %s\n", pair->b == NONE ? "the obstacles" : model->bodies[pair->b].name);
   }
-  print_not_claimed(proved);
+  print_not_claimed(model);
+  if (proved->opened) printf("  what is inside of surfaces with holes: %zu\n", proved->opened);
+}
+
+void print_no_path(const NoPath* shown) {
+  const Model* model = shown->model;
+  const Certificate* certificate = model->certificate;
+  size_t bodies = model->body_count + model->inputs->obstacle_count, pairs = 0;
+  printf("PROVED: no path leads from the start to ");
+  if (certificate->goals == 1) printf("the goal");
+  if (certificate->goals > 1) printf("any of the %zu goals", certificate->goals);
+  printf(": each one touches something");
+  print_kept(certificate);
+  for (size_t i = 0; i < certificate->joint_count; ++i) {
+    printf("  %s: from %.6g", certificate->joints[i], certificate->values[i]);
+    for (size_t goal = 1; goal <= certificate->goals; ++goal) {
+      printf(" %s %.6g", goal == 1 ? "to" : "or", certificate->values[goal * certificate->joint_count + i]);
+    }
+    printf("\n");
+  }
+  bool begun = false;
+  for (size_t i = 0; i < certificate->joint_count; ++i) {
+    if (shown->columns[i]) print_item("whatever other joints than these do", certificate->joints[i], &begun);
+  }
+  end_list(begun);
+  printf("  %zu cells are blocked; smallest overlap of a cell: %.3g m\n", shown->blocked, shown->smallest);
+  for (size_t i = 0; i < bodies * bodies; ++i) pairs += shown->used[i];
+  printf("pairs that block the way (%zu):\n", pairs);
+  for (size_t i = 0; i < bodies * bodies; ++i) {
+    if (shown->used[i]) printf("  %s - %s\n", name_of(model, i / bodies), name_of(model, i % bodies));
+  }
+  print_not_claimed(model);
 }

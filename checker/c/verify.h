@@ -2,7 +2,7 @@
 #ifndef EVENROAD_VERIFY_H
 #define EVENROAD_VERIFY_H
 
-#include "model.h"
+#include "cells.h"
 
 typedef struct {
   const Model* model;
@@ -18,5 +18,6 @@ void require_same_path(const Certificate* certificate, const char* path);
 
 /* Print what was proved, about which bodies, and what is not claimed. */
 void print_proved(const Proved* proved);
+void print_no_path(const NoPath* shown);
 
 #endif

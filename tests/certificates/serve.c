@@ -11,6 +11,20 @@
 static Given given;
 static const Inputs* inputs;
 
+/* Find the pieces of all meshes now: what is taken during a check is freed after it. */
+static void find_all_pieces(void) {
+  for (size_t i = 0; i < inputs->link_count; ++i) {
+    const Link* link = inputs->links + i;
+    for (size_t k = 0; k < link->count; ++k) {
+      if (link->shapes[k].kind == MESH && !link->shapes[k].convex) find_pieces(link->shapes[k].mesh);
+    }
+  }
+  for (size_t i = 0; i < inputs->obstacle_count; ++i) {
+    const Shape* shape = &inputs->obstacles[i].shape;
+    if (shape->kind == MESH && !shape->convex) find_pieces(shape->mesh);
+  }
+}
+
 /* Read files, or check a certificate; return the exit code. */
 static int answer(int letter, File record) {
   int code = setjmp(on_failure);
@@ -22,9 +36,15 @@ static int answer(int letter, File record) {
     *scene++ = *srdf++ = 0;
     given = (Given){.robot = (char*)record.data, .scene = scene, .srdf = *srdf ? srdf : NULL};
     inputs = read_inputs(given, &carries_nothing);
+    find_all_pieces();
   } else {
     const Certificate* certificate = read_certificate(record);
-    verify(certificate->robot || certificate->scene ? read_inputs(given, certificate) : inputs, certificate);
+    const Inputs* about = certificate->robot || certificate->scene ? read_inputs(given, certificate) : inputs;
+    if (certificate->of_no_path) {
+      verify_no_path(about, certificate);
+    } else {
+      verify(about, certificate);
+    }
   }
   return ACCEPTED;
 }

@@ -1,0 +1,36 @@
+/* Cells of the ranges of some joints: which of them are open, and which goals they shut off from the start. */
+#ifndef EVENROAD_CELLS_H
+#define EVENROAD_CELLS_H
+
+#include "model.h"
+
+enum { MOST_COLUMNS = 8, UNITS = 1 << 24 };
+
+/* A box of the columns of a tree, in units. */
+typedef struct {
+  uint32_t low[MOST_COLUMNS], high[MOST_COLUMNS];
+} Cell;
+
+/* The columns of a tree: what their ranges are, and which have none. */
+typedef struct {
+  size_t count, columns[MOST_COLUMNS];
+  double range[MOST_COLUMNS][2];
+  bool endless[MOST_COLUMNS];
+} Axes;
+
+/* Mark the goals that are in no open cell which the start reaches. */
+void shut_off(const Axes* axes, const Cell* open, size_t count, const Certificate* certificate, bool* shown);
+
+/* What proves that there is no path. */
+typedef struct {
+  const Model* model;
+  double smallest; /* overlap of a cell [m] */
+  size_t blocked;
+  bool* used;    /* for each two bodies, whether a witness that blocks a cell is about them */
+  bool* columns; /* that a tree has */
+} NoPath;
+
+NoPath verify_no_path(const Inputs* inputs, const Certificate* certificate);
+const char* name_of(const Model* model, size_t body); /* of a body, or of an obstacle behind them */
+
+#endif
