@@ -30,6 +30,10 @@ def flat_arm(kind="revolute", first=BOX):
     return "\n".join(parts)
 
 
+TIP = """<link name="tip"/><joint name="weld" type="fixed"><parent link="fore"/><child link="tip"/>
+  <origin xyz="0.4 0 0" rpy="0 0 0.5"/></joint></robot>"""
+
+
 def posts(*places, radius=0.03):
     """Return a scene of posts, (x, y)."""
     lines = [
@@ -77,10 +81,10 @@ class Place:
         q = rng.uniform(-3.0, 3.0, (40 * count, 2))
         return q[self.world.valid(q)][:count]
 
-    def certificate(self, start, goals):
+    def certificate(self, start, goals, poses=()):
         """Return the bytes of a certificate; NotAvailable where none is found."""
-        file = self.folder / "none.cert"
-        certify_no_path(self.world, np.array(start, float), np.array(goals, float), self.sources, file)
+        file, goals = self.folder / "none.cert", np.array(goals, float).reshape(-1, len(start))
+        certify_no_path(self.world, np.array(start, float), goals, self.sources, file, poses)
         return file.read_bytes()
 
 

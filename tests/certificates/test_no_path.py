@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad.certificates import no_path
 from evenroad.errors import NotAvailable
 from evenroad_verify.command import main
 from evenroad_verify.no_path import verify_no_path
-from tests.certificates.no_path import Parts, Place, accepts, at, flat_arm, posts
+from tests.certificates.no_path import TIP, Parts, Place, accepts, at, flat_arm, posts
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +35,7 @@ def test_a_plan_that_is_proved_to_have_no_path_is_certified(caught, tmp_path, ca
     words = [str(file), str(place.sources.robot), str(place.sources.scene)]
     assert main(words) == 0
     said = capsys.readouterr().out
-    assert said.startswith("PROVED: no path leads from the start to the goal: each one touches something")
+    assert said.startswith("PROVED: no path leads from the start to any goal: each one touches something")
     assert "whatever other joints than these do: turn" in said
     assert "upper - post0" in said
     assert main([*words, "--path", str(file)]) == 1
@@ -197,6 +198,33 @@ def test_clearance_and_padding_count_for_obstacles(tmp_path):
     assert not accepts(data.replace(b"clearance 0.08", b"clearance 0.01"), place.inputs)
     with pytest.raises(NotAvailable):
         Place(tmp_path / "far", scene, clearance=0.01).certificate([0.0, 0.0], [[0.0, 2.0]])
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_pose_is_out_of_reach_for_all_postures_or_not_certified(turned, tmp_path, monkeypatch):
+    """Two postures have the tip there, or one if its rotation counts; a flood says which the start is joined with."""
+    monkeypatch.setattr(no_path, "CELLS", {1: 500, 2: 2_500})
+    place = Place(tmp_path / "tip", posts(at(0.7, 0.3), at(-0.7, 0.3)), flat_arm().replace("</robot>", TIP))
+    rng, shown, reached = np.random.default_rng(1), 0, 0
+    for turn, bend in rng.uniform(-2.9, 2.9, (10, 2)):
+        xyz = 0.5 * np.cos(turn) + 0.4 * np.cos(turn + bend), 0.5 * np.sin(turn) + 0.4 * np.sin(turn + bend), 0.0
+        goal = er.PoseGoal(er.Pose(xyz, rpy=(0.0, 0.0, turn + bend + 0.5)), "tip", position_only=not turned)
+        mirrored = 2.0 * np.arctan2(xyz[1], xyz[0]) - turn
+        postures = (
+            [(turn, bend)] if turned else [(turn, bend), (np.remainder(mirrored + np.pi, 2 * np.pi) - np.pi, -bend)]
+        )
+        is_reached = any(place.joined([0.0, 0.0], each) for each in postures if np.abs(each).max() < 3.0)
+        reached += is_reached
+        try:
+            data = place.certificate([0.0, 0.0], [], [goal])
+        except NotAvailable:
+            continue
+        assert not is_reached
+        assert accepts(data, place.inputs)
+        key = b"\npose " if turned else b"\nposition "
+        assert not accepts(data.replace(key, key + b"1"), place.inputs)
+        shown += 1
+    assert min(shown, reached) > 1
 
 
 def test_flipped_bits_never_stop_the_checker(caught):

@@ -95,9 +95,12 @@ def _require_same_path(certificate: Certificate, path: Path) -> None:
 def _lines_of_no_path(shown: Shown) -> list[str]:
     """Return what is printed of an accepted certificate of no path."""
     terminals = shown.certificate.terminals
-    goals = "the goal" if len(terminals.curves) == 1 else f"any of the {len(terminals.curves)} goals"
-    lines = [f"PROVED: no path leads from the start to {goals}: each one touches something{_kept(terminals)}"]
-    for name, *values in zip(terminals.joints, terminals.curves[0, 0], *terminals.curves[:, 2], strict=True):
+    read = shown.certificate
+    goals = [f"{read.goals} configurations"] if read.goals else []
+    goals += [f"{each.link} at {np.round(each.point, 6).tolist()}, however it is reached" for each in read.poses]
+    lines = [f"PROVED: no path leads from the start to any goal: each one touches something{_kept(terminals)}"]
+    lines.append(f"  goals: {', '.join(goals)}")
+    for name, *values in zip(terminals.joints, terminals.curves[0, 0], *terminals.curves[: read.goals, 2], strict=True):
         lines.append(f"  {name}: from {values[0]:.6g} to {' or '.join(f'{value:.6g}' for value in values[1:])}")
     lines.append(f"  whatever other joints than these do: {', '.join(shown.joints)}")
     lines.append(f"  {shown.blocked} cells are blocked; smallest overlap of a cell: {shown.least:.3g} m")

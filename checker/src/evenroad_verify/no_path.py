@@ -9,7 +9,7 @@ import numpy as np
 from evenroad_verify.cells import Cells, Ranges, cells_of, reached
 from evenroad_verify.certificate import FARTHEST, Certificate, count_of, head_of, read_file, tables_of
 from evenroad_verify.claim import BEYOND, Inputs, bodies_of, may_touch, require_limits, silent
-from evenroad_verify.errors import Floats, Ints, demand
+from evenroad_verify.errors import Bools, Floats, Ints, demand
 from evenroad_verify.frames import Frames, frames_of
 from evenroad_verify.overlaps import (
     LEAST,
@@ -22,7 +22,9 @@ from evenroad_verify.overlaps import (
     require_blocked,
     solid_of,
 )
+from evenroad_verify.poses import PoseGoal, are_beyond, read_poses
 from evenroad_verify.proof import ROUNDING
+from evenroad_verify.robot import Joint
 
 MAGIC = b"evenroad certificate of no path 1\n"
 _ANY = 1000.0
@@ -35,13 +37,15 @@ class NoPath:
 
     `terminals` holds joints, distances to keep, and start and goals as motions from the start.  `balls`, (b, 5), are
     the number of a body, a centre in its frame and a radius; `witnesses`, (w, 2), the numbers of a ball and of a solid.
-    `parts` are columns and the answers of their cells.
+    `parts` are columns and the answers of their cells.  `goals` counts those that are configurations.
     """
 
     terminals: Certificate
     balls: Floats
     witnesses: Ints
     parts: tuple[tuple[Ints, Ints], ...]
+    goals: int
+    poses: tuple[PoseGoal, ...]
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,7 @@ def read_no_path(data: bytes) -> NoPath:
 
 def _no_path(said: dict[str, list[str]], body: bytes) -> NoPath:
     once = ("goals", "balls", "witnesses")
-    head = head_of(said, once, ("cells",))
+    head = head_of(said, once, ("cells", "position", "pose"))
     dim = len(head["joints"])
     goals, balls, witnesses = (count_of(said[key][0]) for key in once)
     parts = [[count_of(word) for word in line.split(" ")] for line in said.get("cells", [])]
@@ -72,7 +76,8 @@ def _no_path(said: dict[str, list[str]], body: bytes) -> NoPath:
         demand(columns and len(set(columns)) == len(columns), "cells are of no joint, or of one twice")
         demand(max(columns) < dim, "cells are of a joint that is not named")
         sizes.append(count * _bytes(len(columns), witnesses))
-    demand(goals > 0 and parts, "it has no goals, or no cells")
+    poses = read_poses(said)
+    demand((goals or poses) and parts, "it has no goals, or no cells")
     pieces, head["carried"] = tables_of(said, body, sizes)
     terminals = np.frombuffer(pieces[0], "<f8").reshape(-1, dim)
     demand(np.isfinite(terminals).all() and np.abs(terminals).max() <= FARTHEST, "an end is no number, or too large")
@@ -80,7 +85,8 @@ def _no_path(said: dict[str, list[str]], body: bytes) -> NoPath:
     ball = np.concatenate([table["body"][:, None], table["ball"]], axis=1, dtype=float)
     sane = np.isfinite(ball).all() and (ball[:, 4] > 0.0).all() and not (np.abs(ball[:, 1:]) > FARTHEST).any()
     demand(sane, "a ball is no number, or too large")
-    goal = terminals[1:]
+    # With poses alone, the start is where its curve ends.
+    goal = terminals[1:] if goals else terminals
     start = np.broadcast_to(terminals[0], goal.shape)
     curves = np.stack([start, 0.5 * (start + goal), goal], axis=1)
     answers = [
@@ -92,6 +98,8 @@ def _no_path(said: dict[str, list[str]], body: bytes) -> NoPath:
         ball,
         np.frombuffer(pieces[2], "<u2").reshape(-1, 2).astype(np.int64),
         tuple(answers),
+        goals,
+        tuple(poses),
     )
 
 
@@ -113,10 +121,9 @@ def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
         bodies = [Body(name, place[name][0], some, False) for name, some in shapes.items()]
         bodies += [Body(each.name, 0, list(each.shapes), True) for each in inputs.scene.obstacles]
         table, names = _witnesses(read, inputs, bodies, may_touch(inputs.robot, inputs.scene, shapes))
-        left, blocked, least = np.ones(len(terminals.curves), bool), 0, np.inf
+        left, blocked, least = np.ones(read.goals + len(read.poses), bool), 0, np.inf
         for columns, answers in read.parts:
             cells = cells_of(_ranges(frames, inputs, terminals, columns), answers)
-            left &= _in_reach(cells, terminals)
             witness, shut = cells.answer - 1 - len(columns), cells.answer > len(columns)
             demand((witness < len(table)).all(), "an unknown witness")
             for number in np.unique(witness[shut]):
@@ -128,28 +135,51 @@ def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
             _require_precise(frames, inputs, bodies, cells)
             least = min(least, require_blocked(places, frames, witness[shut], table))
             blocked += int(shut.sum())
+            inside = _inside(cells, terminals)
+            for i, goal in enumerate(terminals.curves[: read.goals, 2]):
+                left[i] &= (cells.holding(goal) & inside).any()
+            places = Places(frames, cells.ranges, middles[inside], half[inside], len(terminals.joints))
+            slides = _slides(frames, inputs, terminals)
+            for i, pose in enumerate(read.poses, start=read.goals):
+                left[i] &= not are_beyond(pose, places, frames, place, columns, slides).all()
         demand(not left.any(), f"a goal is not shown to be out of reach: number {int(left.argmax())}")
     used = tuple(dict.fromkeys(terminals.joints[column] for columns, _ in read.parts for column in columns))
     return Shown(read, names, used, blocked, least, silent(inputs.robot, inputs.scene, shapes, place, terminals))
 
 
-def _in_reach(cells: Cells, terminals: Certificate) -> list[bool]:
-    """Return which goals may be reached, by the cells alone; Refused where the start is in no open cell."""
+def _inside(cells: Cells, terminals: Certificate) -> Bools:
+    """Return which cells the start reaches; Refused where it is in no open cell."""
     start = cells.holding(terminals.curves[0, 0]) & (cells.answer == 0)
     demand(start.any(), "the start is not in an open cell")
-    inside = reached(cells, start)
-    return [bool((cells.holding(goal) & inside).any()) for goal in terminals.curves[:, 2]]
+    return reached(cells, start)
+
+
+def _range(inputs: Inputs, joint: Joint) -> tuple[float, float]:
+    """Return how far a joint may go, -inf and inf without limits."""
+    low, high = -np.inf, np.inf
+    for least, most in ((joint.lower, joint.upper), inputs.scene.limits.get(joint.name, (low, high))):
+        if most - least <= _ANY:
+            low, high = max(low, least - BEYOND), min(high, most + BEYOND)
+    return low, high
+
+
+def _slides(frames: Frames, inputs: Inputs, terminals: Certificate) -> Floats:
+    """Return how far from 0 joints slide at most, 0 for those that turn [m]."""
+    joints = {joint.name: joint for joint in frames.joints}
+    far = np.zeros(len(frames.joints))
+    for k in np.flatnonzero(frames.slides):
+        ends = np.array(_range(inputs, joints[terminals.joints[frames.column[k]]]))
+        far[k] = np.abs(frames.factor[k] * ends + frames.offset[k]).max()
+    return far
 
 
 def _ranges(frames: Frames, inputs: Inputs, terminals: Certificate, columns: Ints) -> Ranges:
     """Return the ranges of columns: as far as the joints may go, or one turn."""
-    limits = {joint.name: (joint.lower, joint.upper) for joint in frames.joints}
+    joints = {joint.name: joint for joint in frames.joints}
     low, high = np.full(len(columns), -np.inf), np.full(len(columns), np.inf)
     for i, column in enumerate(columns):
         name = terminals.joints[column]
-        for least, most in (limits[name], inputs.scene.limits.get(name, (-np.inf, np.inf))):
-            if most - least <= _ANY:
-                low[i], high[i] = max(low[i], least - BEYOND), min(high[i], most + BEYOND)
+        low[i], high[i] = _range(inputs, joints[name])
         turns = frames.factor[frames.column == column]
         slides = frames.slides[frames.column == column].any()
         whole = not slides and (turns == np.rint(turns)).all()

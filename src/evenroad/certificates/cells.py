@@ -12,7 +12,8 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._time_limit import look_at_clock, require_time_for
-from evenroad.certificates.witnesses import SPARE, Witnesses, depths
+from evenroad.certificates.targets import BEYOND, WITHIN, Target, status_of
+from evenroad.certificates.witnesses import SPARE, Witnesses, depths, frames_at
 
 BITS = 24
 """A range is 2^BITS units long; no cell has a shorter side than one."""
@@ -22,7 +23,7 @@ MORE = 4.0
 """Paths with up to this many times the unknown cells of the best path are halved, too."""
 CLEAR = 1e-6
 """Cost of a clear cell on a path; that of an unknown cell is 1."""
-LEAST_TRIED = 48
+LEAST_TRIED = 256
 """Number of pairs that are tried in small cells; in large ones there are more."""
 
 
@@ -47,7 +48,8 @@ class Tree:
     """Cells: depth, lower corner in units, number of the first of two halves or -1, and the pair that blocks it or -1.
 
     `shifts`, (depths + 1, columns), says how often the cells of a depth are halved along each column.  `rows` are pairs
-    that may block a cell that is not halved; `valid` are pairs that block one.
+    that may block a cell that is not halved; `valid` are pairs that block one.  `status`, (cells, targets), says if
+    targets are beyond a cell.
     """
 
     ranges: Ranges
@@ -58,6 +60,8 @@ class Tree:
     pair: Ints
     clear: Bools
     rows: tuple[Ints, Ints]
+    targets: tuple[Target, ...]
+    status: Ints
     valid: list[tuple[Ints, Ints]] = field(default_factory=list)
 
     def side(self, depth: Ints) -> Ints:
@@ -114,7 +118,7 @@ class Tree:
                         yield mine[same], here[index[same]]
 
 
-def tree_of(witnesses: Witnesses, ranges: Ranges, pairs: Ints) -> Tree:
+def tree_of(witnesses: Witnesses, ranges: Ranges, pairs: Ints, targets: tuple[Target, ...]) -> Tree:
     """Return a tree of one cell, which some pairs may block."""
     dim = len(witnesses.robot.group)
     middle = np.zeros((1, dim))
@@ -123,7 +127,7 @@ def tree_of(witnesses: Witnesses, ranges: Ranges, pairs: Ints) -> Tree:
     for column, low, high in zip(ranges.columns, ranges.low, ranges.high, strict=True):
         half = np.zeros((1, dim))
         half[0, column] = 0.5 * (high - low)
-        lengths.append(float(depths(witnesses, middle, half, cell, pairs)[1].max()) + 1e-3)
+        lengths.append(float(depths(witnesses, frames_at(witnesses, middle), half, cell, pairs)[1].max()) + 1e-3)
     shifts = [np.zeros(len(lengths), dtype=np.int64)]
     left = np.array(lengths)
     while shifts[-1].max() < BITS - 1 and shifts[-1].sum() < 60:
@@ -141,6 +145,8 @@ def tree_of(witnesses: Witnesses, ranges: Ranges, pairs: Ints) -> Tree:
         none.copy(),
         np.zeros(1, dtype=np.bool_),
         (cell, pairs),
+        targets,
+        np.zeros((1, len(targets)), dtype=np.int64),
     )
 
 
@@ -155,7 +161,10 @@ def decide(tree: Tree, witnesses: Witnesses, cells: Ints) -> None:
     q[:, ranges.columns] = ranges.low + tree.low[cells] * ((ranges.high - ranges.low) / 2.0**BITS) + 0.5 * side
     half[:, ranges.columns] = 0.5 * side
     cell, tried = position[row[new]], pair[new]
-    deep, moved = depths(witnesses, q, half, cell, tried)
+    frames = frames_at(witnesses, q)
+    for i, target in enumerate(tree.targets):
+        tree.status[cells, i] = status_of(target, witnesses.tree, frames, half)
+    deep, moved = depths(witnesses, frames, half, cell, tried)
     shut = deep - moved > SPARE
     tree.valid.append((cells[cell[shut]], tried[shut]))
     tree.pair[cells[cell[shut]]] = tried[shut]
@@ -192,25 +201,20 @@ def halve(tree: Tree, cells: Ints) -> Ints:
     tree.depth, tree.low = np.concatenate([tree.depth, depth]), np.concatenate([tree.low, low])
     tree.child, tree.pair = np.concatenate([tree.child, none]), np.concatenate([tree.pair, none])
     tree.clear = np.concatenate([tree.clear, np.zeros(2 * count, dtype=np.bool_)])
+    tree.status = np.concatenate([tree.status, np.zeros((2 * count, len(tree.targets)), dtype=np.int64)])
     return np.arange(first, first + 2 * count)
 
 
 def separate(tree: Tree, witnesses: Witnesses, start: Floats, goals: Floats, most: int) -> Bools:
-    """Halve cells until a start, (dim,), is apart from goals, (g, dim); return from which it is.
+    """Halve cells until a start, (dim,), is apart from goals, (g, dim), and from the targets; return from which it is.
 
     A goal that clear cells join with the start is given up; all are, where more than `most` cells would be needed.
     """
-    require_time_for("scipy.sparse.csgraph")
-    # Imported here, as most plans need no proof.
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import dijkstra
-
-    terminals, open_goals = tree.ranges.units(np.vstack([start, goals])), np.arange(len(goals))
+    terminals, open_goals = tree.ranges.units(np.vstack([start, goals])), np.arange(len(goals) + len(tree.targets))
     decide(tree, witnesses, np.zeros(1, dtype=np.int64))
     for _ in range(COARSE + 2 * (len(tree.ranges.columns) - 1)):
         cells = tree.leaves()
         decide(tree, witnesses, halve(tree, cells[~tree.clear[cells]]))
-    apart = np.zeros(len(goals), dtype=np.bool_)
     while True:
         look_at_clock()
         leaves = tree.leaves()
@@ -218,22 +222,49 @@ def separate(tree: Tree, witnesses: Witnesses, start: Floats, goals: Floats, mos
         number[leaves] = np.arange(len(leaves))
         at = tree.find(terminals, leaves)
         if at[0] < 0:
-            return np.zeros(len(goals), dtype=np.bool_)
-        one, two = (number[np.concatenate(each)] for each in zip(*tree.neighbours(leaves, leaves), strict=True))
+            return np.zeros(len(goals) + len(tree.targets), dtype=np.bool_)
+        pairs = number[np.concatenate([np.stack(each) for each in tree.neighbours(leaves, leaves)], axis=1)]
         counts = np.where(tree.clear[leaves], CLEAR, 1.0)
-        rows, columns = np.concatenate([one, two]), np.concatenate([two, one])
-        graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(len(leaves),) * 2).tocsr()
-        graph.data = counts[graph.indices]
-        away = dijkstra(graph, indices=number[at[0]])
-        reach = np.where(at[1:] >= 0, away[number[at[1:]]], np.inf)
-        apart = np.isinf(reach)
+        away = _costs(pairs, counts, np.where(leaves == at[0], counts, np.inf))
+        entries = _entries(tree, leaves, at[1:])
+        reach = (away + entries).min(axis=1, initial=np.inf)
+        apart: Bools = np.isinf(reach)
         open_goals = open_goals[~apart[open_goals] & ~(reach[open_goals] < 0.5)]
         if not len(open_goals):
             return apart
-        left = dijkstra(graph, indices=number[at[1 + open_goals]], min_only=True)
+        left = _costs(pairs, counts, counts + entries[open_goals].min(axis=0))
+        status = tree.status[leaves][:, open_goals[open_goals >= len(goals)] - len(goals)]
+        mixed = ~tree.clear[leaves] | (status != BEYOND).any(axis=1)
         through = away + left - counts
-        split = ~tree.clear[leaves] & (through <= MORE * through.min() + 1.0)
-        split &= tree.depth[leaves] + 1 < len(tree.shifts)
+        split = mixed & (through <= MORE * through.min() + 1.0) & (tree.depth[leaves] + 1 < len(tree.shifts))
         if not split.any() or len(tree.depth) + 2 * int(split.sum()) > most:
             return apart
         decide(tree, witnesses, halve(tree, leaves[split]))
+
+
+def _costs(pairs: Ints, counts: Floats, begin: Floats) -> Floats:
+    """Return the least cost of paths to each cell, (n,), that begin in cells at some costs, inf where none does.
+
+    A path goes on between `pairs` of cells, (2, p), and each cell that it enters costs something.
+    """
+    require_time_for("scipy.sparse.csgraph")
+    # Imported here, as most plans need no proof.
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import dijkstra
+
+    first, most = np.flatnonzero(np.isfinite(begin)), len(counts)
+    rows = np.concatenate([pairs[0], pairs[1], np.full(len(first), most)])
+    columns = np.concatenate([pairs[1], pairs[0], first])
+    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(most + 1,) * 2).tocsr()
+    # Pairs of cells of one size come twice.
+    graph.data = counts[graph.indices]
+    graph.data[graph.indptr[most] :] = begin[graph.indices[graph.indptr[most] :]]
+    return np.asarray(dijkstra(graph, indices=most)[:most])
+
+
+def _entries(tree: Tree, leaves: Ints, goals: Ints) -> Floats:
+    """Return what it costs to end at goals, which are in some cells or in none, and at targets, in each cell."""
+    at_goals = np.where(leaves == goals[:, np.newaxis], CLEAR, np.inf)
+    status = tree.status[leaves].T
+    at_targets = np.where(status == BEYOND, np.inf, np.where(status == WITHIN, CLEAR, 1.0))
+    return np.concatenate([at_goals, at_targets])

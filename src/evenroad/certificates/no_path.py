@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,16 +12,18 @@ from evenroad._arrays import Bools, Floats, Ints
 from evenroad.certificates.cells import Ranges, separate, tree_of
 from evenroad.certificates.certify import PathLike, Sources, claimed_by
 from evenroad.certificates.pruned import LEFT_OPEN, pruned
+from evenroad.certificates.targets import Target, target_of
 from evenroad.certificates.witnesses import Witnesses, witnesses_of
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.loading.description import RobotDescription
+from evenroad.poses.pose_goal import PoseGoal
 from evenroad.scenes.scene import Scene
 
 MAGIC = "evenroad certificate of no path 1\n"
 FIRST = 3
 """Number of first joints of which cells are tried."""
-CELLS = {1: 4_000, 2: 60_000, 3: 400_000}
+CELLS = {1: 4_000, 2: 60_000, 3: 150_000}
 """Number of joints -> largest number of cells."""
 BEYOND = 1e-5
 """By how much cells reach beyond limits [rad or m]."""
@@ -37,9 +39,12 @@ class Part:
     answers: Ints
 
 
-def certify_no_path(world: object, start: Floats, goals: Floats, sources: Sources, file: PathLike) -> None:
+def certify_no_path(
+    world: object, start: Floats, goals: Floats, sources: Sources, file: PathLike, poses: Sequence[PoseGoal] = ()
+) -> None:
     """Write the certificate that no path leads from a start, (dim,), to any goal, (g, dim), in a world of these files.
 
+    Nor does one lead to any posture that reaches one of the `poses`.
     Raises NotAvailable for a robot or a scene of which no certificate speaks, and where no such proof is found.
     """
     if not isinstance(world, ArmWorld):
@@ -47,21 +52,27 @@ def certify_no_path(world: object, start: Floats, goals: Floats, sources: Source
     claimed = claimed_by(sources, world)
     urdf, scene = claimed.urdf, claimed.scene
     witnesses = witnesses_of(world.robot, urdf, scene, claimed.beside)
-    parts, left = [], np.ones(len(goals), dtype=np.bool_)
+    slides = _slides(witnesses, urdf, scene)
+    parts, left = [], np.ones(len(goals) + len(poses), dtype=np.bool_)
     for columns in _columns(witnesses):
         if not left.any():
             break
-        part, apart = _part(witnesses, urdf, scene, columns, start, goals[left])
+        targets = [target_of(world.robot, witnesses.tree, pose, columns, slides) for pose in poses]
+        wanted = [target for target, is_left in zip(targets, left[len(goals) :], strict=True) if is_left]
+        part, apart = _part(witnesses, urdf, scene, columns, start, goals[left[: len(goals)]], wanted)
         if part is not None:
             parts.append(part)
             left[np.flatnonzero(left)[apart]] = False
     if left.any():
-        which = "the goal" if len(goals) == 1 else f"goal {int(left.argmax())}"
+        number = int(left.argmax())
+        which = "the goal" if len(left) == 1 else f"goal {number}" if number < len(goals) else "a pose"
         raise NotAvailable(
             f"no certificate: balls inside of the robot's shapes do not show that {which} is out of reach of the first"
             f" {min(FIRST, len(start))} joints"
         )
-    claimed.write(Path(file), MAGIC, *_content(witnesses, np.vstack([start, goals]), parts))
+    lines, content = _content(witnesses, np.vstack([start, goals]), parts)
+    said = [target_of(world.robot, witnesses.tree, pose, (), slides).line for pose in poses]
+    claimed.write(Path(file), MAGIC, [*said, *lines], content)
 
 
 def _columns(witnesses: Witnesses) -> Iterator[tuple[int, ...]]:
@@ -74,32 +85,35 @@ def _columns(witnesses: Witnesses) -> Iterator[tuple[int, ...]]:
 
 
 def _part(
-    witnesses: Witnesses, urdf: RobotDescription, scene: Scene, columns: tuple[int, ...], start: Floats, goals: Floats
+    witnesses: Witnesses,
+    urdf: RobotDescription,
+    scene: Scene,
+    columns: tuple[int, ...],
+    start: Floats,
+    goals: Floats,
+    targets: list[Target],
 ) -> tuple[Part | None, Bools]:
-    """Return cells of some columns that keep a start apart from goals, and from which; None from none."""
-    none = np.zeros(len(goals), dtype=np.bool_)
+    """Return cells of some columns that keep a start apart from goals and targets, and from which; None from none."""
+    none = np.zeros(len(goals) + len(targets), dtype=np.bool_)
     others = np.ones(len(start), dtype=np.bool_)
     others[list(columns)] = False
     pairs = np.flatnonzero(~witnesses.columns[:, others].any(axis=1) & witnesses.columns.any(axis=1))
     ranges = _ranges(witnesses, urdf, scene, columns)
     if ranges is None or not len(pairs):
         return None, none
-    tree = tree_of(witnesses, ranges, pairs)
+    tree = tree_of(witnesses, ranges, pairs, tuple(targets))
     apart = separate(tree, witnesses, start, goals, CELLS[len(columns)])
     if not apart.any():
         return None, none
-    return Part(ranges.columns, pruned(tree, start, goals[apart])), apart
+    shown = np.flatnonzero(apart[len(goals) :])
+    return Part(ranges.columns, pruned(tree, start, goals[apart[: len(goals)]], shown)), apart
 
 
 def _ranges(witnesses: Witnesses, urdf: RobotDescription, scene: Scene, columns: tuple[int, ...]) -> Ranges | None:
     """Return the ranges of some columns as a checker has them; None where a joint has none."""
-    names, joints = witnesses.robot.group, {joint.name: joint for joint in urdf.joints}
     low, high = np.full(len(columns), -np.inf), np.full(len(columns), np.inf)
     for i, column in enumerate(columns):
-        name = names[column]
-        for least, most in (joints[name].stops, scene.limits.get(name, (-np.inf, np.inf))):
-            if most - least <= _ANY:
-                low[i], high[i] = max(low[i], least - BEYOND), min(high[i], most + BEYOND)
+        low[i], high[i] = _range(urdf, scene, witnesses.robot.group[column])
         moved = [(joint, factor) for _, joint, _, at, factor, _ in witnesses.tree.moved if at == column]
         if np.isinf(low[i]) and any(joint.kind == "prismatic" or factor % 1.0 for joint, factor in moved):
             return None
@@ -107,6 +121,24 @@ def _ranges(witnesses: Witnesses, urdf: RobotDescription, scene: Scene, columns:
             return None
     endless = np.isinf(low)
     return Ranges(np.array(columns), np.where(endless, -np.pi, low), np.where(endless, np.pi, high), endless)
+
+
+def _range(urdf: RobotDescription, scene: Scene, name: str) -> tuple[float, float]:
+    """Return how far a joint may go as a checker has it, -inf and inf without limits."""
+    joint, low, high = next(joint for joint in urdf.joints if joint.name == name), -np.inf, np.inf
+    for least, most in (joint.stops, scene.limits.get(name, (low, high))):
+        if most - least <= _ANY:
+            low, high = max(low, least - BEYOND), min(high, most + BEYOND)
+    return low, high
+
+
+def _slides(witnesses: Witnesses, urdf: RobotDescription, scene: Scene) -> Floats:
+    """Return how far from 0 joints slide at most, 0 for those that turn [m]."""
+    far = []
+    for _, joint, _, column, factor, offset in witnesses.tree.moved:
+        limits = np.array(_range(urdf, scene, witnesses.robot.group[column]))
+        far.append(float(np.abs(factor * limits + offset).max()) if joint.kind == "prismatic" else 0.0)
+    return np.array(far)
 
 
 def _content(witnesses: Witnesses, terminals: Floats, parts: list[Part]) -> tuple[list[str], bytes]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.certificates.cells import Tree
+from evenroad.certificates.targets import BEYOND
 
 OTHER, INSIDE, WALL = 0, 1, 2
 
@@ -14,14 +15,20 @@ HALVED, LEFT_OPEN = -1, -1000
 """Answers: HALVED - k halves a cell along column k; all others are numbers of pairs."""
 
 
-def pruned(tree: Tree, start: Floats, goals: Floats) -> Ints:
-    """Return the answers of a tree that keeps a start, (dim,), and some goals, (g, dim), apart."""
+def pruned(tree: Tree, start: Floats, goals: Floats, targets: Ints) -> Ints:
+    """Return the answers of a tree that keeps a start, (dim,), apart from goals, (g, dim), and from some targets."""
     terminals = tree.ranges.units(np.vstack([start, goals]))
     leaves = tree.leaves()
     label = _components(tree, leaves)
     at = tree.find(terminals, leaves)
     sides = [{int(label[at[0]])}, {int(label[each]) for each in at[1:] if each >= 0}]
-    found = [_answers(tree, leaves, np.isin(label[leaves], sorted(side))) for side in sides if side]
+    # A larger cell may have a posture that its halves have not.
+    whole = (tree.status[:, targets] == BEYOND).all(axis=1)
+    found = [
+        _answers(tree, leaves, np.isin(label[leaves], sorted(side)), whole)
+        for side in (sides[:1] if len(targets) else sides)
+        if side
+    ]
     return min(found, key=len)
 
 
@@ -35,8 +42,8 @@ def _components(tree: Tree, leaves: Ints) -> Ints:
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
-def _answers(tree: Tree, leaves: Ints, inside: Bools) -> Ints:
-    """Return the answers that keep the cells of one side of a wall."""
+def _answers(tree: Tree, leaves: Ints, inside: Bools, whole: Bools) -> Ints:
+    """Return the answers that keep the cells of one side of a wall, of which those may be joined that are `whole`."""
     shut = np.flatnonzero(tree.pair >= 0)
     of = np.full(len(tree.depth), OTHER)
     of[leaves[inside]] = INSIDE
@@ -50,9 +57,10 @@ def _answers(tree: Tree, leaves: Ints, inside: Bools) -> Ints:
     for depth in np.unique(tree.depth[halved])[::-1].tolist():
         here = halved[tree.depth[halved] == depth]
         first, second = of[tree.child[here]], of[tree.child[here] + 1]
-        whole = (first == second) & (first != WALL) & ~kept[tree.child[here]] & ~kept[tree.child[here] + 1]
-        of[here] = np.where(whole, first, WALL)
-        kept[here] = ~whole
+        joined = (first == second) & ~kept[tree.child[here]] & ~kept[tree.child[here] + 1]
+        joined &= (first == OTHER) | ((first == INSIDE) & whole[here])
+        of[here] = np.where(joined, first, WALL)
+        kept[here] = ~joined
     answers, cells = [], np.zeros(1, dtype=np.int64)
     along = np.diff(tree.shifts, axis=0, append=tree.shifts[-1:]).argmax(axis=1)
     while len(cells):

@@ -236,15 +236,19 @@ def _pairs(
     return Pairs(ball, solid, np.concatenate(keep), of_ball & ~of_solid, of_solid & ~of_ball)
 
 
-def depths(witnesses: Witnesses, q: Floats, half: Floats, cell: Ints, pair: Ints) -> tuple[Floats, Floats]:
+def frames_at(witnesses: Witnesses, q: Floats) -> Floats:
+    """Return the poses of all frames at configurations, (n, dim): (n, frames, 4, 4)."""
+    robot, poses = witnesses.robot, link_poses(witnesses.robot, q)
+    children = [robot.links.index(joint.child) for _, joint, *_ in witnesses.tree.moved]
+    return np.stack([poses[:, 0], *(poses[:, child] for child in children)], axis=1)
+
+
+def depths(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair: Ints) -> tuple[Floats, Floats]:
     """Return by how much pairs overlap in the middles of cells, and how far half a cell moves them [m].
 
-    `q`, (n, dim), are middles and `half`, (n, dim), half sides; `cell` and `pair` say which pairs in which cells.
+    `frames`, (n, f, 4, 4), are those in middles and `half`, (n, dim), half sides; `cell` and `pair` say which pairs in
+    which cells.
     """
-    robot, tree = witnesses.robot, witnesses.tree
-    poses = link_poses(robot, q)
-    placed = [poses[:, 0], *(poses[:, robot.links.index(joint.child)] for _, joint, *_ in tree.moved)]
-    frames = np.stack(placed, axis=1)
     deep, moved = np.empty(len(cell)), np.empty(len(cell))
     for begin in range(0, len(cell), _AT_ONCE):
         some = slice(begin, begin + _AT_ONCE)

@@ -127,7 +127,7 @@ def _certified(plan: PlanArm, result: PlanResult) -> list[tuple[str, str]]:
         certify(result.world, result.path, sources, plan.certificate)
     else:
         try:
-            certify_no_path(result.world, result.start, result.goals, sources, plan.certificate)
+            certify_no_path(result.world, result.start, result.goals, sources, plan.certificate, result.poses)
         except NotAvailable as reason:
             # A proof may use more than a certificate: the answer of the plan stands.
             return [("certificate", str(reason))]

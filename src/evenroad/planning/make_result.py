@@ -66,7 +66,9 @@ def _made(problem: Problem, attributes: dict[str, object]) -> PlanResult:
     result = object.__new__(PlanResult)
     world = problem.world
     vars(result).update(_DEFAULTS, counts={}, timings={}, deviation={}, start=problem.start, goals=problem.goals)
-    vars(result).update(attributes, world=world)
+    given = problem.given
+    poses = () if given is None else tuple(goal for goal, _ in given.poses)
+    vars(result).update(attributes, world=world, poses=poses)
     return led(world, result)
 
 

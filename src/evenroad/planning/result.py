@@ -16,6 +16,7 @@ from evenroad.collision.validate import MeshCheck
 from evenroad.errors import InvalidValue
 from evenroad.planning.result_html import as_html
 from evenroad.points.pointset import Origin
+from evenroad.poses.pose_goal import PoseGoal
 from evenroad.roadmap.certificate import Certificate
 from evenroad.space.path import path_length, resample
 from evenroad.world import BoundsLengths, MeasuresPaths, NamesNearest, World
@@ -135,6 +136,8 @@ class PlanResult:
         the scene.
     world : World or None
         World of the query; None in a plan that was read from a file.
+    poses : tuple of PoseGoal
+        The poses among the goals, of which `goals` has the postures found; empty in a plan that was read from a file.
 
     Examples
     --------
@@ -168,6 +171,7 @@ class PlanResult:
     meshes: MeshCheck | None = None
     notes: tuple[str, ...] = ()
     world: World | None = field(default=None, repr=False)
+    poses: tuple[PoseGoal, ...] = field(default=(), repr=False)
 
     @cached_property
     def clearance(self) -> float | None:
@@ -458,7 +462,7 @@ class PlanResult:
         if self.path is None and self.status is Status.NOT_CONNECTED and self.world is not None:
             from evenroad.certificates.no_path import certify_no_path
 
-            certify_no_path(self.world, self.start, self.goals, sources, file)
+            certify_no_path(self.world, self.start, self.goals, sources, file, self.poses)
             return
         path, world = self._required("certified")
         certify(world, path, sources, file)
