@@ -143,7 +143,7 @@ def test_a_task_from_its_file_drives_such_a_base_within_limits_of_a_file(tmp_pat
     assert main(command) == 2
     assert "has no velocity limit" in capsys.readouterr().err
     assert main(["run", "task.yaml", "--limits", "limits.yaml", "-o", "limits.yaml"]) == 2
-    assert "would overwrite what is read" in capsys.readouterr().err
+    assert "would overwrite the file" in capsys.readouterr().err
 
 
 def test_what_does_not_go_with_such_a_base_is_refused(world):

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
 from evenroad.certificates.certify import certify
 from evenroad.certificates.certify_path import PathCheck, check_path, path_of, with_held
 from evenroad.certificates.world_claim import world_claim
 from evenroad.cli.options import Positional
+from evenroad.cli.outputs import require_certifiable
 from evenroad.cli.plan import RobotOptions
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.errors import InvalidValue
+from evenroad.loading.find import find_robot
 from evenroad.loading.load import read_robot
 from evenroad.robots.kinematics import held_values
 from evenroad.scenes.robot_in_scene import in_scene
@@ -54,10 +54,8 @@ class CertifyPath(RobotOptions):
 
     def run(self) -> int:
         """Read, prove, print; return 0 if the path is proved free, else 1."""
-        if self.certificate is not None:
-            if self.bodies is not None:
-                raise InvalidValue("--certificate goes without --bodies: it is about the shapes of the robot's file")
-            require_writable_folder(self.certificate)
+        inputs = (self.path, *find_robot(self.robot), self.srdf, self.bodies, self.scene)
+        require_certifiable(self.certificate, self.bodies, inputs)
         model = self.read_robot(self.robot)
         scene = load_scene("empty" if self.scene is None else self.scene)
         robot = in_scene(model.robot, scene)

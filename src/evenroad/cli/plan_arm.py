@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import asdict, replace
 from functools import reduce
 from operator import and_
 from pathlib import Path
 
-from evenroad._files import require_writable_folder
 from evenroad._time_limit import within
 from evenroad.cli import interrupted
+from evenroad.cli.outputs import require_certifiable
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     KEPT,
@@ -46,9 +45,9 @@ def plan_arm(plan: PlanArm) -> int:
     constraints = _constraints(plan)
     read = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies, plan.roadmap)
     inputs = [path for path in read if path is not None]
-    files = output_files(plan, inputs, ("json", "csv"), "file")
+    files = output_files(plan, inputs, ("json", "csv"))
     require_trajectory_options(plan, inputs, files.values())
-    _require_certifiable(plan, inputs)
+    require_certifiable(plan.certificate, plan.bodies, inputs, embed=plan.embed)
     if plan.roadmap is not None and (how.n is not None or plan.improve):
         raise InvalidValue("--roadmap goes without points and without --improve: it has milestones of its own")
     kept = None if plan.roadmap is None else load_roadmap(plan.roadmap)
@@ -98,19 +97,6 @@ def plan_arm(plan: PlanArm) -> int:
 
     code = finish(files, result, record, world.robot.group, draw, rows)
     return interrupted() if stopped else code
-
-
-def _require_certifiable(plan: PlanArm, inputs: Iterable[Path]) -> None:
-    """Raise InvalidValue for a certificate of bodies that the robot's URDF lacks, or in place of an input."""
-    if plan.certificate is None:
-        if plan.embed:
-            raise InvalidValue("--embed goes with --certificate: which carries robot and scene")
-        return
-    if plan.bodies is not None:
-        raise InvalidValue("--certificate goes without --bodies: it is about the bodies of the robot's file")
-    if plan.certificate.resolve() in {path.resolve() for path in inputs}:
-        raise InvalidValue(f"--certificate would overwrite the file {plan.certificate}")
-    require_writable_folder(plan.certificate)
 
 
 def _certified(plan: PlanArm, result: PlanResult) -> list[tuple[str, str]]:

@@ -43,7 +43,7 @@ def plan_disk(plan: PlanDisk) -> int:
             raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")
     gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free, rules=plan.rules)
     suffixes = ("json", "csv") if plan.csv else ("json",)
-    files = output_files(plan, map_files(plan.world), suffixes, "map")
+    files = output_files(plan, map_files(plan.world), suffixes)
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
     made = made_of(gridmap.world(plan.robot_radius, clearance=plan.clearance), map=str(plan.world))

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from evenroad._checks import require_positive
-from evenroad._files import require_writable_folder
 from evenroad._seal import with_digest
 from evenroad._terminal import print_table
+from evenroad.cli.outputs import require_output
 from evenroad.cli.plan import PlanOptions
 from evenroad.cli.sampler import TAKES, chosen_rule, chosen_sampler, draw_points, require_seed
 from evenroad.collision.arm_world import ArmWorld
@@ -79,7 +79,7 @@ def chosen_planner(
     return PRM(points, rule=how.rule, search=search, certify=certify)
 
 
-def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str], what: str) -> dict[str, Path]:
+def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str]) -> dict[str, Path]:
     """Return the files of results, suffix -> file; InvalidValue for one that would overwrite an input."""
     if plan.out is not None and not plan.out.name:
         raise InvalidValue(f"--out must end with a file name, got {str(plan.out)!r}")
@@ -97,9 +97,7 @@ def output_files(plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[s
         stem = Path(f"{plan.world.stem}-plan")
     files = named(stem)
     for path in files.values():
-        if path.resolve() in taken:
-            raise InvalidValue(f"--out {stem} would overwrite the {what} {path}")
-        require_writable_folder(path)
+        require_output(f"--out {stem}", path, taken)
     return files
 
 

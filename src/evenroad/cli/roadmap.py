@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Annotated
 
 from evenroad._checks import counted, require_count
-from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
+from evenroad.cli.outputs import require_output
 from evenroad.cli.plan import RobotOptions
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
@@ -48,9 +48,7 @@ class MakeRoadmap(RobotOptions):
         out = Path(f"{Path(self.robot).stem}.roadmap") if self.out is None else self.out
         if not out.name:
             raise InvalidValue(f"--out must end with a file name, got {str(out)!r}")
-        if out.resolve() in {path.resolve() for path in inputs if path is not None}:
-            raise InvalidValue(f"--out {out} would overwrite one of the files that it is made from")
-        require_writable_folder(out)
+        require_output("--out", out, inputs)
         cell = Scene() if self.cell is None else load_scene(self.cell)
         robot = self.read_robot(self.robot).robot
         roadmap = build_roadmap(ArmWorld(robot, cell), self.n, rule=rule)

@@ -13,13 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from evenroad._files import atomic_write, require_writable_folder
+from evenroad._files import atomic_write
 from evenroad._rng import generator
 from evenroad._terminal import print_table
 from evenroad.cli.options import Positional
+from evenroad.cli.outputs import require_output
 from evenroad.cli.plan import RobotOptions
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import Undecided
+from evenroad.loading.find import find_robot
 from evenroad.loading.groups import EVERY
 from evenroad.loading.model import RobotModel
 from evenroad.loading.written_srdf import srdf_text
@@ -58,7 +60,9 @@ class Robot(RobotOptions):
     def run(self) -> int:
         """Load, measure, print; return 0."""
         if self.write_srdf is not None:
-            require_writable_folder(self.write_srdf)
+            require_output(
+                "--write-srdf", self.write_srdf, (*find_robot(self.robot), self.srdf, self.bodies, self.scene)
+            )
         try:
             model = self.read_robot(self.robot)
         except Undecided:

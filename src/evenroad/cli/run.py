@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from evenroad._checks import require_positive
-from evenroad._files import Json, require_writable_folder
+from evenroad._files import Json
 from evenroad._terminal import print_table
 from evenroad.cli.options import Option, Positional, options_of
+from evenroad.cli.outputs import require_certifiable, require_output
 from evenroad.cli.plan import RobotOptions
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.collision.coerce import as_scene
@@ -63,17 +64,11 @@ class RunTask(RobotOptions):
         from evenroad.trajectory.formats import format_of, save_trajectories
 
         require_positive("speed", self.speed, at_most=1.0)
+        inputs = (self.task, self.limits, self.srdf, self.bodies)
         for file in self.out:
             format_of(file)
-            if file.resolve() in {each.resolve() for each in (self.task, self.limits) if each is not None}:
-                raise InvalidValue(f"--out {file} would overwrite what is read")
-            require_writable_folder(file)
-        if self.certificate is not None:
-            if self.bodies is not None:
-                raise InvalidValue("--certificate goes without --bodies: it is about the bodies of the robot's file")
-            require_writable_folder(self.certificate)
-        elif self.embed:
-            raise InvalidValue("--embed goes with --certificate: which carries the robot")
+            require_output("--out", file, inputs)
+        require_certifiable(self.certificate, self.bodies, inputs, embed=self.embed)
         world, done = self.planned()
         for file in self.out:
             # The trajectory of an earlier run must not pass for this one.

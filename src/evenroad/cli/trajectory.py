@@ -13,7 +13,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_known, require_positive
-from evenroad._files import require_writable_folder
+from evenroad.cli.outputs import require_output
 from evenroad.cli.plan import PlanArm
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.finish import mesh_check
@@ -62,18 +62,15 @@ def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: I
             raise InvalidValue(
                 f"--{end}-velocity goes without --via: a plan of several motions begins and ends at rest"
             )
-    taken = {source.resolve() for source in inputs} | ({plan.limits.resolve()} if plan.limits else set())
     results = {output.resolve() for output in outputs}
     for file in plan.trajectory:
         format_of(file)
         if plan.via and file.name.lower().endswith(_MOVEJ):
             raise InvalidValue(f"--via goes without {file}: a controller would round the path where it is to pass")
-        if file.resolve() in taken:
-            raise InvalidValue(f"--trajectory {file} would overwrite an input")
+        require_output("--trajectory", file, [*inputs, plan.limits])
         if file.resolve() in results:
             raise InvalidValue(f"--trajectory {file} is a file of another result of this plan; name another one")
         results.add(file.resolve())
-        require_writable_folder(file)
 
 
 def _remove_earlier(plan: PlanArm) -> None:
