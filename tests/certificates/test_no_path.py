@@ -224,7 +224,8 @@ def test_a_pose_is_out_of_reach_for_all_postures_or_not_certified(turned, tmp_pa
         key = b"\npose " if turned else b"\nposition "
         assert not accepts(data.replace(key, key + b"1"), place.inputs)
         shown += 1
-    assert min(shown, reached) > 1
+    assert shown > 1
+    assert reached > 0
 
 
 def test_flipped_bits_never_stop_the_checker(caught):
