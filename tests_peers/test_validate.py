@@ -15,6 +15,7 @@ from evenroad.errors import BrokenFile
 from evenroad.loading.load import load_model
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.space.path import resample
+from tests_peers.second_judge import free_for_both
 
 pytest.importorskip("coal")
 
@@ -59,6 +60,8 @@ def test_a_path_that_is_free_for_the_capsules_is_free_for_the_meshes(arm):
     check = validate(arm, robot, NOTHING, path)
     assert check.verdict == "free"
     assert str(check) == f"free ({check.states} states)"
+    world = CoalWorld(robot, NOTHING, original_shapes(arm, robot))
+    assert free_for_both(world, resample(path, world.space, 0.005)[0]).all()
 
 
 def test_a_contact_is_named_with_its_motion_and_its_state(arm):

@@ -211,8 +211,8 @@ def _transform(coal: ModuleType, pose: Floats) -> object:
 def coal_shape(coal: ModuleType, shape: Shape) -> Solid:
     """Return a shape in its own frame: round ones and boxes exactly, meshes triangle by triangle.
 
-    A mesh stays what it is: where it is not convex, what coal builds with ``buildConvexRepresentation`` lets
-    collisions pass.
+    A mesh stays what it is.  What coal 3.0.3 builds with ``buildConvexRepresentation`` lets collisions pass where the
+    mesh is not convex, and most of all where its triangles share no corners, as in an STL: docs/guides/coal.md.
     """
     if isinstance(shape, PointCloud):
         raise InvalidValue(f"coal has no clouds of points, got a {shape}")
