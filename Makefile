@@ -2,7 +2,8 @@
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
-PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constraints.txt
+# Python compiles a package's files on their first use: most are never used here.
+PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q --no-compile -c constraints.txt
 # A compiler of your own: `CXX=clang++ make test`; without, clang comes as a wheel.
 CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
 # Tests start hundreds of processes: where nothing compiled is kept, each compiles evenroad's files anew.

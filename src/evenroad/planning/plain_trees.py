@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad._time_limit import BudgetSpent
+from evenroad._time_limit import BudgetSpent, look_at_clock
 from evenroad.constraints.constrained_world import KeptWorld
 from evenroad.planning.connector import Connection
 from evenroad.points.reversed_halton import cube_points, shifted_cube_points
@@ -79,6 +79,7 @@ class _Both:
         # The straight motions to the goals come first: many queries need no trees.
         ahead, samples = trees[1].nodes.copy(), trees[0].nodes[:0]
         for first in range(-BATCH, MOST_SAMPLES, BATCH):
+            look_at_clock()
             own, other = trees[turn], trees[1 - turn]
             if first >= len(samples):
                 samples = _samples(world, max(FIRST, 2 * len(samples)), variant)
@@ -148,6 +149,7 @@ def _reach(world: World, tree: _Tree, targets: Floats, nodes: Ints, step: float,
     """
     node, rows, checked = nodes.copy(), np.arange(len(targets)), 0
     for _ in range(MOST_STEPS):
+        look_at_clock()
         here, there = tree.nodes[node[rows]], targets[rows]
         if (at := np.flatnonzero((here == there).all(axis=1))).size:
             return int(rows[at[0]]), int(node[rows[at[0]]]), checked
