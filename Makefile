@@ -33,16 +33,21 @@ help:
 $(VENV)/.tools: constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "evenroad needs Python >= 3.11; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) scikit-build-core nanobind cmake ninja hatchling editables $(CLANG)
+	$(PIP) scikit-build-core nanobind cmake ninja hatchling editables
+	@touch $@
+
+# The wheel of clang is large: the sanitized kernel, which another compiler builds, does not wait for it.
+$(VENV)/.clang: | $(VENV)/.tools
+	$(if $(CLANG),$(PIP) $(CLANG))
 	@touch $@
 
 # The kernel lies beside the Python files that use it; an edit of its sources compiles what changed.
-$(VENV)/.native: $(KERNEL) | $(VENV)/.tools
+$(VENV)/.native: $(KERNEL) | $(VENV)/.clang
 	$(BIN)/python tools/build_backend.py
 	@touch $@
 
 # Of the packages only where they are is installed: the kernel is built by the rule above, at the same time.
-$(VENV)/.core: pyproject.toml studies/pyproject.toml checker/pyproject.toml constraints.txt | $(VENV)/.tools
+$(VENV)/.core: pyproject.toml studies/pyproject.toml checker/pyproject.toml constraints.txt | $(VENV)/.clang
 	$(PIP) -C kernel=no --no-build-isolation -e . -e ./studies -e ./checker
 	@touch $@
 
@@ -60,8 +65,12 @@ checker:
 	@mkdir -p out
 	$(CC) -std=c99 -O2 -Wall -Wextra -Wpedantic -Werror checker/c/*.c -lm -o out/evenroad-verify
 
+$(VENV)/.sanitized-kernel: $(KERNEL) | $(VENV)/.tools
+	$(BIN)/python tools/build_backend.py --sanitized-kernel
+	@touch $@
+
 # Once for each state of the kernel: its tests where memory errors and undefined behaviour stop the program.
-$(VENV)/.sanitized: $(KERNEL) $(shell find tests/native -name '*.py') | $(VENV)/.dev
+$(VENV)/.sanitized: $(VENV)/.sanitized-kernel $(shell find tests/native -name '*.py') | $(VENV)/.dev
 	$(BIN)/python tools/build_backend.py --sanitized
 	@touch $@
 
@@ -85,9 +94,9 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/clang-format --dry-run -Werror src/evenroad/_native/cpp/*/*.?pp checker/c/*.[ch]
 
-# While clang builds the kernel, which keeps one processor busy for half of the time, packages come and mypy reads.
+# While two compilers build the kernel, packages come and mypy reads.
 test:
-	+$(MAKE) --no-print-directory -j 2 lint $(VENV)/.native $(VENV)/.sanitized
+	+$(MAKE) --no-print-directory -j 3 lint $(VENV)/.native $(VENV)/.sanitized
 	$(BIN)/pytest -n 2
 
 test-peers: $(VENV)/.peers $(VENV)/.native

@@ -197,7 +197,7 @@ def build_in_place(kind: str = "native", **more: str) -> None:
         shutil.rmtree(folder, ignore_errors=True)
         run("cmake", "-S", str(SOURCES), "-B", str(folder), "-G", "Ninja", *arguments)
         told.write_text("\n".join(arguments))
-    run("cmake", "--build", str(folder))
+    run("cmake", "--build", str(folder), "--parallel", str(os.cpu_count() or 1))
     run("cmake", "--install", str(folder), "--prefix", str(ROOT / "src"))
     print(f"the native kernel is built ({time.perf_counter() - began:.0f} s)", file=sys.stderr, flush=True)
 
@@ -217,8 +217,11 @@ def run(tool: str, *arguments: str) -> None:
         raise SystemExit(f"{tool} {shlex.join(arguments)}\n{done.stdout[-8000:]}")
 
 
-def test_sanitized(tests: Sequence[str]) -> None:
-    """Build the kernel with a compiler that has sanitizers, which the wheel's clang has not, and run tests with it."""
+def build_sanitized() -> list[str]:
+    """Build the kernel with a compiler that has sanitizers, which the wheel's clang has not.
+
+    Return the libraries that it needs, or nothing where there is no such compiler.
+    """
     compiler = shlex.split(os.environ.setdefault("CXX", "g++"))
     # The second: exceptions are watched, too, and Python itself loads no C++ library.
     asked = [[*compiler, f"-print-file-name={library}"] for library in ("libasan.so", "libstdc++.so.6")]
@@ -226,8 +229,16 @@ def test_sanitized(tests: Sequence[str]) -> None:
     libraries = [subprocess.run(each, capture_output=True, text=True).stdout.strip() for each in asked if found]
     if not found or not all(Path(each).is_file() for each in libraries):
         print(f"{compiler[0]} with sanitizers is not installed: the kernel is not tested under them", file=sys.stderr)
-        return
+        return []
     build_in_place("sanitized", EVENROAD_SANITIZE="ON")
+    return libraries
+
+
+def test_sanitized(tests: Sequence[str]) -> None:
+    """Run tests with the kernel that has sanitizers, built anew if it has changed."""
+    libraries = build_sanitized()
+    if not libraries:
+        return
     environment = {
         **os.environ,
         "EVENROAD_ARCH": "sanitized",
@@ -260,6 +271,8 @@ def build_wheels(folder: str) -> None:
 if __name__ == "__main__":
     if "--wheels" in sys.argv[1:]:
         build_wheels(sys.argv[-1])
+    elif "--sanitized-kernel" in sys.argv[1:]:
+        build_sanitized()
     elif "--sanitized" in sys.argv[1:]:
         test_sanitized(sys.argv[2:] or ["-n", "2", "tests/native"])
     else:

@@ -60,15 +60,20 @@ def shape_clearance(robot, shapes, scene, q):
     poses = link_poses(robot, q)
     solids = [(shape.link, *solid) for shape in shapes for solid in solids_of(shape)]
     there = [solid for obstacle in scene.obstacles for solid in solids_of(obstacle.body)]
+    centres = np.array([corners.mean(axis=0) for corners, _ in there])
+    sizes = np.array([np.linalg.norm(corners - corners.mean(axis=0), axis=1).max() + more for corners, more in there])
     apart = np.full(len(q), np.inf)
     for link, corners, radius in solids:
         rotation, origin = (np.broadcast_to(each, (len(q), *each.shape[1:])) for each in poses[link])
         for row in range(len(q)):
             here = corners @ rotation[row].T + origin[row]
-            middle, size = here.mean(axis=0), np.linalg.norm(here - here.mean(axis=0), axis=1).max() + radius
-            for others, other in there:
-                centre = others.mean(axis=0)
-                far = np.linalg.norm(middle - centre) - size - np.linalg.norm(others - centre, axis=1).max() - other
-                if far < apart[row]:
-                    apart[row] = min(apart[row], distance(here, others) - radius - other)
+            middle = here.mean(axis=0)
+            size = np.linalg.norm(here - middle, axis=1).max() + radius
+            # The balls around two solids are no farther apart than these: the nearest come first.
+            bounds = np.linalg.norm(centres - middle, axis=1) - sizes - size
+            for number in np.argsort(bounds):
+                if bounds[number] >= apart[row]:
+                    break
+                others, other = there[number]
+                apart[row] = min(apart[row], distance(here, others) - radius - other)
     return apart
