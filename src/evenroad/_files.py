@@ -135,6 +135,14 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
         return file.read()
 
 
+def read_known(path: str | os.PathLike[str], what: str) -> bytes:
+    """Return the content of a file of the kind `what`; BrokenFile if it cannot be read."""
+    try:
+        return read_bytes(path)
+    except OSError as error:
+        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+
+
 def looks_like(path: str | os.PathLike[str]) -> str:
     """Return the type of a readable file by its content."""
     with open_file(path) as file:
@@ -152,9 +160,7 @@ def looks_like(path: str | os.PathLike[str]) -> str:
 def read_json_file(path: str | os.PathLike[str], what: str) -> Json:
     """Return the content of a JSON file of the kind `what`; BrokenFile if it cannot be read."""
     try:
-        return json.loads(read_bytes(path).decode())
-    except OSError as error:
-        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+        return json.loads(read_known(path, what).decode())
     except json.JSONDecodeError as error:
         raise not_a(f"JSON, as a {what} is", path, f"line {error.lineno}, column {error.colno}: {error.msg}") from error
     except (ValueError, RecursionError) as error:

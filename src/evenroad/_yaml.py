@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from evenroad._files import not_a, read_bytes
+from evenroad._files import not_a, read_known
 from evenroad._understood import Kind, require_understood
 from evenroad._yaml_values import values_of
 from evenroad.errors import BrokenFile, InvalidValue, shown
@@ -38,11 +38,9 @@ def read_yaml(path: Path, what: str, *, tags: Mapping[str, Callable[[str, str], 
     Raises BrokenFile as `read_mapping`.
     """
     try:
-        return values_of(read_bytes(path).decode(), path, tags or {})
+        return values_of(read_known(path, what).decode(), path, tags or {})
     except BrokenFile:
         raise
-    except OSError as error:
-        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
     except (yaml.YAMLError, ValueError, LookupError, AttributeError, RecursionError) as error:
         raise not_a(f"YAML, as a {what} is", path, _why(error)) from error
 

@@ -23,10 +23,9 @@ import numpy as np
 
 from evenroad import __version__
 from evenroad._arrays import Floats
-from evenroad._files import atomic_write, cache_folder, read_bytes
+from evenroad._files import atomic_write, cache_folder, read_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad._seal import read_sealed, sealed
-from evenroad.errors import BrokenFile
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Mesh, Shape
 from evenroad.loading.description import RobotDescription
@@ -56,11 +55,8 @@ def key_of(
     sources = [shape.source for shape in description.shapes if isinstance(shape, Mesh)]
     meshes = [("mesh", source) for source in sources if isinstance(source, Path)]
     for what, path in (*meshes, *others):
-        try:
-            # An empty file is refused where none at all is fine.
-            content = b"absent" if path is None else b"present" + read_bytes(path)
-        except OSError as error:
-            raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+        # An empty file is refused where none at all is fine.
+        content = b"absent" if path is None else b"present" + read_known(path, what)
         digest.update(hashlib.sha256(content).digest())
     return digest.hexdigest()
 

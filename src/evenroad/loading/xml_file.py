@@ -6,7 +6,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
-from evenroad._files import not_a, read_bytes
+from evenroad._files import not_a, read_bytes, read_known
 from evenroad.errors import BrokenFile
 
 
@@ -15,10 +15,7 @@ def read_xml(path: Path, what: str, kind: str, tag: str | None = "robot") -> Ele
 
     `what` and `kind` name the file in errors, each a BrokenFile.
     """
-    try:
-        content = read_bytes(path)
-    except OSError as error:
-        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+    content = read_known(path, what)
     root = _parsed(content, path)
     if tag is not None and root.tag != tag:
         raise BrokenFile(f"{path} is not {kind}: its outermost element is <{root.tag}>, not <{tag}>")
