@@ -1,5 +1,5 @@
-// Trees may find a path that is longer than the best by a share that changes from round to round: smoothing makes it
-// shorter.  What they may find at most comes near the best path again and again, so in the end no better one is missed.
+// Trees may find a path that is longer than the best by a share that changes from round to round, because smoothing
+// makes it shorter.  The share repeatedly comes near 0, so in the end no better path is missed.
 #include "planning/improver.hpp"
 
 #include <algorithm>
@@ -13,30 +13,30 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Paths of trees may be longer than the best path by up to this share, by that times the square of a multiple of the
-/// golden ratio, without its integer.
+/// Largest share by which paths of trees may be longer than the best path.  It is multiplied by the square of the
+/// fractional part of a multiple of the golden ratio.
 constexpr double LOOSEST = 3.0;
 
-/// Every third round begins with ends alone, the others with the beginning and the end of the best path, too: the way
-/// out of a narrow place need not be found again.  Where they are cut is even in the plane: powers of 1 / 1.3247...
+/// Every third round begins with start and goals alone.  The others also begin with both ends of the best path, so that
+/// they need not find the way out of a narrow passage again.  The cuts are even in the plane: powers of 1 / 1.3247...
 constexpr std::int64_t ANEW = 3;
 constexpr double PLASTIC = 0.7548776662466927;
 
-/// The trees of a round may check this many motions at least, or this multiple of those of the first path, times 1, 1,
-/// 2, 1, 1, 2, 4 ...
+/// Limit on the motions of a round's trees: the larger of a number and a multiple of the first path's motions, times 1,
+/// 1, 2, 1, 1, 2, 4 ...
 constexpr std::int64_t LEAST_MOTIONS = 400, TIMES_FIRST = 2;
 
-/// After this many rounds without a better path the best is polished, repeatedly while that gains anything.
+/// Number of rounds without a better path after which the best one is polished, repeatedly while it gets shorter.
 constexpr std::int64_t WAIT = 3;
 constexpr std::size_t MOST_POLISHED = 4;
 
-/// A path that exceeds the best by less than this share is polished, too.
+/// Share of excess over the best path below which another path is polished, too.
 constexpr double PROMISING = 0.01;
 
-/// Batches of sixteen checks after which no waypoint slides any more before a path is polished.
+/// Batches of sixteen checks after which waypoints stop sliding before a path is polished.
 constexpr std::int64_t SMOOTHING = 2000;
 
-/// A path is as short as can be when it exceeds the straight distance by less than this share.
+/// Share of excess over the straight distance below which a path counts as the shortest.
 constexpr double STRAIGHT = 1e-9;
 
 /// Return term i >= 1 of 1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8 ... (M. Luby, A. Sinclair, D. Zuckerman, 1993).

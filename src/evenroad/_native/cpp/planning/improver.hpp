@@ -1,8 +1,8 @@
-// Ever shorter paths: rounds of trees that only grow where a path may be shorter, and each better path drawn tight.
+// An improver of paths: rounds of trees that only grow where a path may be shorter, and smoothing of each better path.
 //
-// After AO-RRT and AORRTC (K. Hauser and Y. Zhou, 2016; T. Wilson, W. Thomason, Z. Kingston and J. Gammell, 2025):
-// every round plans anew below a bound on the path's length, and a bound that is drawn says from which nodes trees may
-// grow.
+// The method is that of AO-RRT and AORRTC (K. Hauser and Y. Zhou, 2016; T. Wilson, W. Thomason, Z. Kingston and J.
+// Gammell, 2025).  Every round plans below a bound on the path's length.  A sampled bound decides from which nodes
+// trees may grow.
 #pragma once
 
 #include <cstdint>
@@ -18,32 +18,32 @@
 
 namespace evenroad::planning {
 
-/// What an improver may spend in all: rounds, and motions checked by trees.
+/// Limits of an improver: rounds, and motions checked by trees.
 struct Effort {
   std::int64_t rounds, motions;
 };
 
-/// What a call of `improve` ended with: its slice used up, the effort spent, or a path that is as short as can be.
+/// The outcome of a call of `improve`: its slice used up, the effort spent, or the shortest possible path.
 enum class Progress : std::uint8_t { PAUSED, SPENT, SHORTEST };
 
-/// The path that is to become shorter: its motions are proved, it ends at the goal with this number, and trees found it
-/// after a number of motions.
+/// The first path.  Its motions are proved, it ends at the goal with this number, and trees found it after a number of
+/// motions.
 struct First {
   Path path;
   std::int64_t goal, motions;
 };
 
-/// Makes one path shorter, as long as it is allowed to; every motion of its paths is proved.
+/// Makes one path shorter within its limits; every motion of its paths is proved.
 class Improver {
  public:
-  /// Ends, sequences, guides and the joints of the checks must last as long as this.  Without smoothing, paths stay as
+  /// Terminals, sequences, guides and the joints of the checks must outlive this.  Without smoothing, paths stay as
   /// trees find them.
   Improver(Matrix<const double> terminals, const Sequences& sequences, const Guides& guides, First first,
            bool is_smoothing, MotionChecks& checks);
 
-  /// Go on until the effort is spent, or about that many batches of sixteen were checked in this call.
+  /// Continue until the effort is spent, or about this many batches of sixteen were checked in this call.
   ///
-  /// However often it pauses, what it finds is the same.
+  /// The result does not depend on the number of pauses.
   Progress improve(Effort most, std::int64_t batches);
 
   const Path& path() const { return best_; }
@@ -51,17 +51,17 @@ class Improver {
   const Path& along_trees() const { return along_trees_; }
   std::int64_t goal() const { return goal_; }
   double length() const { return best_.length(); }
-  /// The length that no path falls below.
+  /// A lower bound of the length of paths.
   double least() const { return bound_.least(); }
   std::int64_t rounds() const { return rounds_; }
   /// How many motions trees checked, and how many smoothing did.
   std::int64_t motions() const { return motions_; }
   std::int64_t smoothing_motions() const { return checks_.counts.motions - motions_; }
-  /// Of all trees that are done.
+  /// The motions of all finished trees.
   std::int64_t nodes() const { return nodes_; }
 
  private:
-  /// More motions of a first path are not taken for the trees' work.
+  /// Largest number of motions of a first path that counts as the trees' work.
   static constexpr std::int64_t MOST_MOTIONS = 1'000'000;
 
   TreePlanner& begin_round();
@@ -78,7 +78,7 @@ class Improver {
   PathBound bound_;
   Path best_, along_trees_;
   std::int64_t goal_;
-  /// Of the round that has begun, and how many motions it may still check.
+  /// The trees of the current round, and the number of motions it may still check.
   std::optional<TreePlanner> trees_;
   std::int64_t left_ = 0;
   std::int64_t round_motions_, rounds_ = 0, best_round_ = 0, motions_ = 0, nodes_ = 0;

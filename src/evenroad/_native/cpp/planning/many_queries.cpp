@@ -1,4 +1,4 @@
-// Threads take one query after the other, so all that are taken are answered, and no time is lost where some are hard.
+// Threads take queries one by one, so that every query taken is answered, and hard ones do not delay others.
 #include "planning/many_queries.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Many queries of arms, answered by several threads: each as if it were alone, whatever the number of threads.
+// Answers to many queries of arms, by several threads.  An answer depends neither on other queries nor on threads.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,18 @@
 
 namespace evenroad::planning {
 
-/// The world of queries: the checks of a world, and of one with more room where paths keep away from obstacles.
+/// The checks of a world, and of one with more clearance, in which paths keep away from obstacles.
 struct QueryWorld {
   std::shared_ptr<const robot::Checker> checker, roomier;
 };
 
 class ManyQueries {
  public:
-  /// Query i leads from row 2 i of `terminals` to the next one in world `of[i]`.  The arrays must last as long as this.
+  /// Query i leads from row 2 i of `terminals` to the next one in world `of[i]`.  The arrays must outlive this.
   ManyQueries(std::vector<QueryWorld> worlds, std::span<const std::int64_t> of, Matrix<const double> terminals,
               const Drivers& drivers, QueryLimits limits, Smoothing smoothing);
 
-  /// Answer some more, in order, until all are answered or so much time has passed; return how many are.
+  /// Answer more queries, in order, until all are answered or this time has passed; return the number answered.
   std::size_t go_on(std::size_t threads, double seconds);
 
   std::span<const Answer> answers() const { return answers_; }

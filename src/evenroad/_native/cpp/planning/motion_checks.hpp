@@ -1,4 +1,5 @@
-// What planners need of an arm's world: sixteen configurations at once, motions at their states, proofs of motions.
+// The checks of an arm's world for planners: sixteen configurations at once, motions at their states, proofs of
+// motions.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@ using robot::Known;
 using robot::ProofLimits;
 using robot::Wanted;
 
-/// Of the proofs of the motions of a path.
+/// Limits of the proofs of a path's motions.
 constexpr ProofLimits PATH_PROOF{1e-6, 1024};
 
 /// The lanes whose configurations touch something.
@@ -46,11 +47,11 @@ class MotionChecks {
   const double resolution;
   robot::Counts& counts;
 
-  /// Coordinate k of the configuration in a lane, for `touching`, which leaves it as it is.
+  /// Coordinate k of the configuration in a lane, for `touching`, which does not change it.
   double& state(std::size_t k, std::size_t lane) { return states_[k * LANES + lane]; }
 
-  /// Return which of the sixteen configurations touch something.  Those that do not matter, as bits, count as touching;
-  /// where one of a group of neighbours touches something, as many as are wanted together, all may count.
+  /// Return which of the sixteen configurations touch something.  Lanes in `settled` count as touching.  Neighbours
+  /// that are wanted together may all count if one of them touches something.
   Touching touching(robot::Mask idle = 0, Wanted wanted = Wanted::ALL) {
     return {robot::blocked(*workspace_, wanted, idle)};
   }
@@ -70,7 +71,7 @@ class MotionChecks {
     return robot::is_shortcut(*workspace_, a, b, limits);
   }
 
-  /// Keep states so far from obstacles from now on [m], 0 again for the bodies as they are; proofs take those anyway.
+  /// Enlarge the bodies of later state checks by this distance [m]; 0 resets them.  Proofs do not enlarge them.
   void keep_away(double margin) {
     workspace_->judge_by(margin > 0 ? &checker_->wider(static_cast<float>(margin)) : nullptr);
   }

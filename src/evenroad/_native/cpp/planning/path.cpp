@@ -1,4 +1,4 @@
-// Lengths are those of the short way from waypoint to waypoint.
+// Lengths are those of the shortest motion from waypoint to waypoint.
 #include "planning/path.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How long a path may be, and how short it can be at best: by straight distances to the start and to the goals.
+// Bounds of path lengths, from above and below, by straight distances to the start and to the goals.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class PathBound {
   /// Paths along trees are shorter.
   double longest = std::numeric_limits<double>::infinity();
 
-  /// `terminals` are the start and the goals; they and the joints must last as long as this.
+  /// `terminals` are the start and the goals; they and the joints must outlive this.
   PathBound(Matrix<const double> terminals, const robot::Joints& joints)
       : terminals_(terminals), joints_(joints), direction_(joints.size()) {}
 
@@ -31,7 +31,7 @@ class PathBound {
     return least;
   }
 
-  /// Return a length that no path falls below.
+  /// Return a lower bound of the length of paths.
   double least() const { return distance(terminals_[0], 1); }
 
  private:

@@ -1,4 +1,4 @@
-// Bends lead beside the middle of a motion, as far as two of its states are apart.
+// A bend passes beside the middle of a motion, at the distance of two of its states.
 #include "planning/path_proof.hpp"
 
 #include <vector>
@@ -7,8 +7,8 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Number of motions of a path that are bent, and of points tried for the waypoint in the middle: about half of them
-/// do.
+/// Largest number of bent motions of a path, and number of points to try for the middle waypoint; about half of them
+/// succeed.
 constexpr int MOST_BENT = 2;
 constexpr std::size_t BENDS = 8;
 
@@ -20,7 +20,7 @@ bool is_free_with_margin(ConstConfiguration a, ConstConfiguration there, ConstCo
   return is_free;
 }
 
-/// Write a place by which both ways are proved; return whether there is one.
+/// Write a waypoint with proved motions on both sides; return whether there is one.
 bool write_bend(ConstConfiguration a, ConstConfiguration b, double margin, Matrix<const double> directions,
                 MotionChecks& checks, Configuration there) {
   std::vector<double> whole(a.size());

@@ -1,4 +1,4 @@
-// Compiled code answers a query in one call: Python reads it before, and goes on where there is no path.
+// Compiled code answers a query in one call.  Python reads the query before, and continues if there is no path.
 #include "planning/query.hpp"
 
 #include "common/time_limit.hpp"
@@ -10,10 +10,10 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Batches of sixteen checks after which trees pause: the clock alone ends them.
+/// Batches of sixteen checks after which trees pause to look at the clock.
 constexpr std::int64_t NO_PAUSE = std::int64_t{1} << 60;
 
-/// Batches after which no waypoint slides any more.
+/// Batches after which waypoints stop sliding.
 constexpr std::int64_t SLIDING = 500;
 
 class Clock {
@@ -35,7 +35,7 @@ void divide(Path& path, std::int64_t motions, const robot::Joints& joints) {
   }
 }
 
-/// Grow trees until they meet, or no longer.
+/// Grow trees until they meet or a limit is reached.
 Growth grown(TreePlanner& trees, QueryLimits limits) {
   const TimeLimit time(limits.search_seconds);
   try {
@@ -45,7 +45,7 @@ Growth grown(TreePlanner& trees, QueryLimits limits) {
   }
 }
 
-/// Do what may be left undone; return whether there was time for it.
+/// Run an optional step; return whether there was time for it.
 template <class Work>
 bool is_done_in_time(Work work) {
   try {
@@ -69,7 +69,7 @@ void smooth_in_both(Answer& answer, std::shared_ptr<const robot::Checker> checke
     MotionChecks wider(std::move(roomier));
     if (!is_straight || !is_proved(path, 0, 2, wider)) {
       if (is_straight) divide(path, answer.nodes - 1, checks.joints);
-      // A straight path is as short as can be: it stays unless another keeps away.
+      // A straight path is the shortest.  It stays, unless another one keeps away from obstacles.
       is_new |= smooth_with_clearance(path, drivers.guides, SLIDING, checks, wider);
     }
     answer.smoothing_motions += wider.counts.motions;
@@ -116,7 +116,7 @@ Answer answer(std::shared_ptr<const robot::Checker> checker, Matrix<const double
 
 void smooth_with_clearance(Answer& answer, std::shared_ptr<const robot::Checker> checker,
                            std::shared_ptr<const robot::Checker> roomier, const Drivers& drivers) {
-  // One step of a tree is short: it stays as it is.
+  // A single step of a tree is short, and is not smoothed.
   if (answer.nodes <= 2) return;
   const Clock clock;
   answer.is_cut |= !is_done_in_time([&] { smooth_in_both(answer, std::move(checker), std::move(roomier), drivers); });

@@ -1,4 +1,4 @@
-// A motion that would shorten the path by hardly anything is not checked.
+// A motion that would hardly shorten the path is not checked.
 #include "planning/shortcuts.hpp"
 
 #include <algorithm>
@@ -7,13 +7,13 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Of the proof of a motion that would make the path shorter [m].
+/// Tolerance of the proof of a motion that would make the path shorter [m].
 constexpr ProofLimits SHORTCUT_PROOF{1e-3, 64};
 
-/// Motions that shorten the path by less than this share are not looked at; the second where corners are cut.
+/// Motions that shorten the path by less than this share are not checked; the second share is for cuts of corners.
 constexpr double WORTH_WHILE = 3e-3, CORNER_WORTH_WHILE = 1e-3;
 
-/// Places as near as this to a waypoint, as a share of the length, are taken for it.
+/// Positions nearer than this to a waypoint, as a share of the length, are replaced by it.
 constexpr double NEAR = 1e-9;
 
 }  // namespace
@@ -39,7 +39,7 @@ void Shortcuts::pass_by() {
         path_.erase(i + 1, j);
         break;
       }
-      // One after the other where few are left, in larger strides along a path of hundreds.
+      // One by one if few are left, in larger strides along a path of hundreds.
       j -= std::max<std::size_t>(1, (j - i) / 8);
     }
   }
@@ -80,16 +80,16 @@ void Shortcuts::shortcut_corners(std::int64_t most_shortcuts, std::int64_t most_
   }
 }
 
-/// Join two places of the path by a straight motion where that is worth while and free.
+/// Join two positions on the path by a straight motion if it gains enough and is free.
 void Shortcuts::join(double low, double high, double worth_while) {
   const std::size_t size = path_.size();
   const double near = NEAR * path_.length();
-  // The motions that the places are on.
+  // The motions of the positions.
   std::size_t first = 0, last = size - 2;
   while (first < size - 2 && path_.position(first + 1) <= low + near) first++;
   while (last > 0 && path_.position(last) >= high - near) last--;
   if (first >= last) return;
-  // The waypoints that would go.
+  // The waypoints that it would replace.
   std::size_t begin = first + 1, end = last + 1;
   if (low <= path_.position(first) + near) low = path_.position(first), begin = first;
   if (high >= path_.position(last + 1) - near) high = path_.position(last + 1), end = last + 2;

@@ -1,4 +1,4 @@
-// Shorter ways along a path: waypoints are passed by, places joined by straight motions, and corners cut.
+// Shortcuts of a path: waypoints are dropped, positions joined by straight motions, and corners cut.
 #pragma once
 
 #include <cstddef>
@@ -12,28 +12,28 @@
 
 namespace evenroad::planning {
 
-/// What a motion has to be before it is put into a path: free at its states, or proved free throughout.
+/// The check that a new motion must pass: free at its states, or proved free.
 enum class Demand : std::uint8_t { FREE, PROVED };
 
 inline constexpr std::int64_t MOST_SHORTCUTS = 64;
 inline constexpr std::int64_t NO_LIMIT = std::numeric_limits<std::int64_t>::max();
 
-/// Makes one path shorter, by motions of which the same is demanded.
+/// Makes one path shorter, by motions that all pass the same check.
 class Shortcuts {
  public:
   Shortcuts(Path& path, MotionChecks& checks, Demand demand);
 
-  /// Go from each waypoint straight to the farthest one that can be reached.
+  /// Join each waypoint to the farthest one that can be reached straight.
   void pass_by();
 
-  /// Take out single waypoints that their neighbours can do without: where few are left, in half the time.
+  /// Remove single waypoints whose neighbours can be joined.  For few waypoints this takes half the time.
   void pass_by_one();
 
-  /// Join two places, shares of the path's length.
+  /// Join two positions, given as shares of the path's length.
   void join_shares(std::span<const double> pair);
 
-  /// Cut corners, one after the other and again while that gains anything, until that number was tried, or that many
-  /// batches checked in all.  Of each the shorter side is cut off, or half of it, or a quarter.
+  /// Cut corners in turn, and again while the path gets shorter, up to a number of tries and of batches in all.  A cut
+  /// takes the shorter side of a corner, or half of it, or a quarter.
   void shortcut_corners(std::int64_t most_shortcuts, std::int64_t most_batches = NO_LIMIT);
 
  private:

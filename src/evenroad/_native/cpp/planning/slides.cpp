@@ -1,4 +1,4 @@
-// Places are tried at random directions, to which the direction in which the path gets shorter is added.
+// Candidates lie in random directions, to which the direction in which the path gets shorter is added.
 #include "planning/slides.hpp"
 
 #include <algorithm>
@@ -11,19 +11,19 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Places are so far away, as shares of the shorter motion to a neighbour, one after the other.
+/// Distances of candidates in turn, as shares of the shorter motion to a neighbour.
 constexpr std::array SIZES{0.2, 0.24, 0.3, 0.36, 0.44, 0.54, 0.66, 0.8};
 
-/// So much of the direction in which the path gets shorter soonest is added to a direction of length 1.
+/// Weight of the direction in which the path gets shorter fastest, beside a direction of length 1.
 constexpr double AHEAD = 0.2;
 
-/// The states beside a place are so far towards the neighbours, as a share of the way.
+/// Position of the states beside a candidate, as a share of the motion to each neighbour.
 constexpr double BESIDE = 0.4;
 
-/// The lanes of the first place.
+/// The lanes of the first candidate.
 constexpr std::uint32_t STATES_OF_ONE = 7;
 
-/// So many of the places that are free are looked at closely, the one with the shortest way first.
+/// Largest number of free candidates whose motions are checked, shortest path first.
 constexpr int TRIED = 2;
 
 }  // namespace
@@ -62,7 +62,7 @@ void Slides::slide(std::size_t i, std::size_t number) {
   take_best(i);
 }
 
-/// Write the direction in which a waypoint shortens the path soonest; return how far its neighbours are.
+/// Write the direction in which a waypoint shortens the path fastest; return the distances of its neighbours.
 Slides::Gaps Slides::write_ahead(ConstConfiguration a, ConstConfiguration here, ConstConfiguration b) {
   constexpr double LEAST = 1e-9;
   const double before = std::max(write_direction(here, a, checks_.joints, direction_), LEAST);
@@ -77,12 +77,12 @@ Slides::Gaps Slides::write_ahead(ConstConfiguration a, ConstConfiguration here, 
   return {before, after};
 }
 
-/// Write a place around a waypoint, as far as a share of the shorter motion; return whether it is within the limits.
+/// Write a candidate around a waypoint, at a share of the shorter motion; return whether it is within the limits.
 bool Slides::write_candidate(Candidate& candidate, ConstConfiguration here, std::size_t turn, double shorter) {
   const ConstConfiguration direction = directions_[turn % directions_.rows];
   double along = 0.0;
   for (std::size_t k = 0; k < here.size(); k++) along += direction[k] * ahead_[k];
-  // Rather away from the contact than back.
+  // Prefer directions away from the contact.
   const double side = along < 0.0 ? -1.0 : 1.0;
   double reach = fineness.size * SIZES[turn % SIZES.size()] * shorter;
   reach /= std::sqrt(1.0 + 2.0 * AHEAD * side * along + AHEAD * AHEAD);
@@ -94,13 +94,13 @@ bool Slides::write_candidate(Candidate& candidate, ConstConfiguration here, std:
   return is_within;
 }
 
-/// Write a place and a state towards each neighbour for the check, and how long the way by it is.
+/// Write a candidate and a state towards each neighbour for the check, and the length of the path through it.
 void Slides::write_states(std::size_t number, ConstConfiguration a, ConstConfiguration b) {
   Candidate& candidate = candidates_[number];
   const std::size_t lane = STATES * number;
   candidate.length = write_direction(a, candidate.q, checks_.joints, direction_);
   for (std::size_t k = 0; k < a.size(); k++) {
-    // The lane to spare repeats the last candidate.
+    // The unused lane repeats the last candidate.
     checks_.state(k, lane) = checks_.state(k, LANES - 1) = candidate.q[k];
     checks_.state(k, lane + 1) = candidate.q[k] - BESIDE * direction_[k];
   }
@@ -108,7 +108,7 @@ void Slides::write_states(std::size_t number, ConstConfiguration a, ConstConfigu
   for (std::size_t k = 0; k < a.size(); k++) checks_.state(k, lane + 2) = candidate.q[k] - BESIDE * direction_[k];
 }
 
-/// Move the waypoint to the first of the best open places that both neighbours can be reached from.
+/// Move the waypoint to the first of the best free candidates from which both neighbours can be reached.
 void Slides::take_best(std::size_t i) {
   for (int tried = 0; tried < TRIED; tried++) {
     Candidate* best = nullptr;

@@ -1,4 +1,4 @@
-// Waypoints that slide along what they touch: a straight shortcut leaves them where they first touched something.
+// Waypoints that slide along obstacles.  A straight shortcut leaves a waypoint where it first touched one.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace evenroad::planning {
 
-/// How far waypoints move, as a share of what is tried at first, and for how little: shares of the way between a
-/// waypoint's neighbours by which it is longer than the straight one, and by which it has to become shorter.
+/// How far waypoints move, as a share of the first tries, and for which gain.  Both gains are shares of the path
+/// between a waypoint's neighbours: its excess over the straight motion, and the least shortening.
 struct Fineness {
   double size = 1.0, bend = 0.01, worth_while = 1e-3;
 };
@@ -23,25 +23,25 @@ class Slides {
  public:
   Fineness fineness;
 
-  /// `directions` have length 1 and are used in turn; they must last as long as this.
+  /// `directions` have length 1 and are used in turn; they must outlive this.
   Slides(Path& path, MotionChecks& checks, Matrix<const double> directions);
 
-  /// Move a waypoint, not an end, to the best of some candidates around it by which the path is shorter, and free at
-  /// its states.  The number of the slide says which directions and sizes are tried.
+  /// Move an inner waypoint to the best of some candidates around it for which the path is shorter, and free at its
+  /// states.  The number of the slide decides which directions and sizes are tried.
   void slide(std::size_t i, std::size_t number);
 
  private:
-  /// So many places are tried at once, each with a state to both of its sides: fifteen of sixteen lanes.
+  /// Number of candidates tried at once, each with a state on both of its sides: fifteen of sixteen lanes.
   static constexpr std::size_t CANDIDATES = 5, STATES = 3;
 
   struct Candidate {
     std::vector<double> q;
-    /// Of the way from neighbour to neighbour by this candidate.
+    /// Length of the path from neighbour to neighbour through this candidate.
     double length = 0.0;
     bool is_open = false;
   };
 
-  /// How far the neighbours of a waypoint are.
+  /// Distances of a waypoint's neighbours.
   struct Gaps {
     double before, after;
   };
@@ -55,7 +55,7 @@ class Slides {
   MotionChecks& checks_;
   Matrix<const double> directions_;
   std::array<Candidate, CANDIDATES> candidates_;
-  /// The direction in which the path gets shorter soonest.
+  /// The direction in which the path gets shorter fastest.
   std::vector<double> ahead_;
   std::vector<double> direction_;
 };

@@ -1,5 +1,5 @@
-// While a path is drawn tight its motions are judged with bodies a little larger: of motions free then nearly all are
-// proved.
+// While a path is smoothed, its motions are checked with slightly larger bodies.  Nearly all motions that are free then
+// can be proved.
 #include "planning/smoother.hpp"
 
 #include <limits>
@@ -13,31 +13,30 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Number of pairs of points that are joined in each round.
+/// Number of pairs of points to join in each round.
 constexpr std::size_t PAIRS = 2;
 
-/// Rounds that make the path shorter by less than this share gain little; they end after the most in any case.
+/// Share of shortening below which a round gains little, and the largest number of rounds.
 constexpr double LEAST_GAIN = 2e-3;
 constexpr std::size_t MOST_ROUNDS = 64;
 
-/// After every third of these rounds it is tried to pass by waypoints.
+/// After every third of these rounds, waypoints are dropped where possible.
 constexpr std::size_t PASSED_BY = 3;
 
-/// So many pairs are joined where what was drawn tight is not proved.
+/// Number of pairs to join if the smoothed path is not proved.
 constexpr std::size_t SPARE_PAIRS = 20;
 
-/// Batches that the proof of a motion takes, about; slides leave them to it.
+/// Approximate number of batches for the proof of a motion, which slides reserve.
 constexpr std::int64_t OF_PROOF = 6;
 
-/// Of a path that is polished: waypoints slide until they move by less than this share of what is tried at first; they
-/// move less far where a turn makes the path shorter by less than this share; and its motions are divided that are
-/// longer than one of this many parts of it.
+/// Constants of polishing: the share of the first step size at which slides end; the share of shortening below which
+/// steps get smaller; and the number of parts of the path, so that longer motions are divided.
 constexpr double LEAST_SIZE = 0.02, FINE_GAIN = 2e-4;
 constexpr std::size_t PARTS = 8;
 
 constexpr std::size_t HALF = LANES / 2;
 
-/// A path without its ends where these nearly touch something: they stay as they are, and what leads away from them.
+/// A path without ends that nearly touch something: these ends, and the motions away from them, do not change.
 struct Middle {
   Path path;
   std::optional<std::vector<double>> start, goal;
@@ -52,7 +51,7 @@ struct Middle {
 
 std::vector<double> copied(ConstConfiguration q) { return {q.begin(), q.end()}; }
 
-/// Return what is left between ends that nearly touch something; nothing where all that leads away from one does.
+/// Return the path between ends that nearly touch something; nothing if all motions away from an end do.
 std::optional<Middle> between_terminals(const Path& path, MotionChecks& checks) {
   Middle middle{path, {}, {}};
   std::vector<double> direction(checks.joints.size());
@@ -81,8 +80,7 @@ std::optional<Middle> between_terminals(const Path& path, MotionChecks& checks) 
   return middle;
 }
 
-/// Let waypoints slide, and join points of the path, while that gains anything; not beyond that number of batches in
-/// all.
+/// Let waypoints slide, and join points of the path, while it gets shorter and the number of batches allows.
 void slide_and_shorten(Path& path, const Guides& guides, const Sliding& sliding, std::int64_t most_batches,
                        MotionChecks& checks) {
   Shortcuts shortcuts(path, checks, Demand::FREE);
@@ -107,7 +105,7 @@ void slide_and_shorten(Path& path, const Guides& guides, const Sliding& sliding,
   shortcuts.shortcut_corners(MOST_SHORTCUTS);
 }
 
-/// Put a waypoint into the middle of each long motion.
+/// Insert a waypoint in the middle of each long motion.
 void divide(Path& path, const MotionChecks& checks) {
   std::vector<double> middle(checks.joints.size());
   path.measure();
@@ -120,7 +118,7 @@ void divide(Path& path, const MotionChecks& checks) {
   path.measure();
 }
 
-/// Let waypoints slide, ever less far, while that gains anything.
+/// Let waypoints slide in ever smaller steps while the path gets shorter.
 void slide_finely(Path& path, const Guides& guides, std::size_t turn, MotionChecks& checks) {
   Slides slides(path, checks, guides.directions);
   std::size_t number = 977 * turn;
@@ -135,7 +133,7 @@ void slide_finely(Path& path, const Guides& guides, std::size_t turn, MotionChec
   Shortcuts(path, checks, Demand::FREE).pass_by();
 }
 
-/// Return the path drawn tight, shorter than the longest and proved; nothing where it is not.
+/// Return the smoothed path if it is proved and shorter than the longest; else nothing.
 template <class Draw>
 std::optional<Path> drawn(const Path& path, const Guides& guides, Draw draw, MotionChecks& checks,
                           double longest = std::numeric_limits<double>::infinity()) {

@@ -1,4 +1,5 @@
-// The search of the nearest node looks at sixteen nodes at once; it is what trees spend their time on beside checks.
+// The search for the nearest node tests sixteen nodes at once.  Apart from checks, trees spend most of their time on
+// it.
 #include "planning/tree.hpp"
 
 #include <algorithm>
@@ -12,12 +13,12 @@ namespace {
 
 constexpr int WIDTH = 16;
 
-/// Room for nodes at first, which most queries need no more than, and then.  Not a power of two: columns would then
-/// take each other's place in the cache.
+/// First capacity, which suffices for most queries, and later ones.  They are not powers of two, because columns would
+/// then evict each other from the cache.
 constexpr std::size_t FIRST_CAPACITY = 2 * WIDTH, NEXT_CAPACITY = 1040;
 
 constexpr float FAR = 1e15F;
-/// In place of a squared distance: more than any of a node.
+/// Replacement for a squared distance: larger than that of any node.
 constexpr float NOT_ADMITTED = 3e38F;
 constexpr double NO_PERIOD = 1e30;
 
@@ -77,7 +78,7 @@ Node Tree::nearest_of(ConstConfiguration q, Admitted admitted) const {
 }
 
 Node Tree::least_tried() const {
-  // Two loops: of the first the compiler makes vectors.
+  // Two loops, so that the compiler can vectorise the first.
   std::int64_t least = tried_[0];
   for (const std::int64_t each : tried_) least = std::min(least, each);
   return std::ranges::find(tried_, least) - tried_.begin();

@@ -1,5 +1,5 @@
-// A tree of configurations: its nodes, how far they are from the root, which is nearest to a place, and which was tried
-// least often.
+// A tree of configurations: its nodes, their costs from the root, and searches for the nearest node and for the node
+// that was tried least often.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace evenroad::planning {
 
 using Node = std::int64_t;
 
-/// Stands for a node that is not there, e.g. the parent of a root.
+/// The number of a missing node, such as the parent of a root.
 inline constexpr Node NO_NODE = -1;
 
 /// Nodes are numbered as they were added, so parents come before their children.
@@ -28,24 +28,23 @@ class Tree {
   bool is_root(Node node) const { return parent(node) == NO_NODE; }
   std::span<const double> nodes() const { return nodes_; }
 
-  /// How often the tree grew from a node.
+  /// Number of times that the tree grew from a node.
   std::int64_t& tried(Node node) { return tried_[static_cast<std::size_t>(node)]; }
 
   /// Whether the motion from a node's parent is proved.
   bool is_proved(Node node) const { return proved_[static_cast<std::size_t>(node)] != 0; }
   void set_proved(Node node) { proved_[static_cast<std::size_t>(node)] = 1; }
 
-  /// How long the way from the root to a node is.
+  /// Length of the path from the root to a node.
   double cost(Node node) const { return costs_[static_cast<std::size_t>(node)]; }
 
-  /// Add a configuration, which is no node of this tree, so far from its parent, and return its number.
+  /// Add a configuration of another array at a distance from its parent; return its number.
   Node add(ConstConfiguration q, Node parent, double distance);
 
   /// Return the node nearest to a configuration, the first of equals; distances are of single precision.
   Node nearest(ConstConfiguration q) const;
 
-  /// Return the nearest of the nodes by which a way from the root to a configuration may be no longer than this, or
-  /// NO_NODE.
+  /// Return the nearest node through which the path from the root to a configuration is at most this long, or NO_NODE.
   Node nearest_within(ConstConfiguration q, double longest) const;
 
   /// Return the node that was tried least often, the first of equals.
@@ -62,9 +61,9 @@ class Tree {
 
   std::size_t dim_, capacity_ = 0;
   std::vector<double> nodes_, costs_;
-  /// The nodes by coordinate, `capacity_` numbers each; places that hold no node are far away.
+  /// The nodes by coordinate, `capacity_` numbers each; unused entries are far away.
   std::vector<float> columns_;
-  /// The costs of the nodes, in single precision, as many.
+  /// The costs of the nodes, in single precision, `capacity_` numbers.
   std::vector<float> cost_column_;
   std::vector<float> periods_;
   std::vector<Node> parents_;

@@ -1,4 +1,4 @@
-// A path is proved only once it is found; of a motion that is not, the tree loses the branch behind it, and grows on.
+// A path is proved after it is found.  If a motion cannot be proved, its subtree is removed and growth continues.
 #include "planning/tree_planner.hpp"
 
 #include <algorithm>
@@ -10,13 +10,13 @@ namespace evenroad::planning {
 
 namespace {
 
-/// So many steps at most are made in one go towards the other tree.
+/// Largest number of steps made at once towards the other tree.
 constexpr std::int64_t MOST_STEPS = 64;
 
-/// So many goals at most are first tried straight on.
+/// Largest number of goals to which a straight motion is tried first.
 constexpr Node MOST_STRAIGHT = 16;
 
-/// Trees that offered no step so often in a row have no room to grow within their bounds.
+/// Number of rounds in a row without a step after which trees cannot grow within their bounds.
 constexpr std::int64_t MOST_IDLE = 1000;
 
 }  // namespace
@@ -46,23 +46,23 @@ Growth TreePlanner::grow(std::int64_t most_motions, std::int64_t batches) {
     if (is_spent()) return Growth::SPENT;
     if (checks_.counts.batches >= pause) return Growth::PAUSED;
     if (idle_ > MOST_IDLE) return Growth::SPENT;
-    // Bounds come from a path: by then the straight ways were tried.
+    // Bounds come from a path, so the straight motions were tried before.
     const Node goals = bound_ != nullptr ? 0 : std::min(static_cast<Node>(goals_.size()), MOST_STRAIGHT);
     const bool is_solved = straight_ < goals ? join_straight(straight_++) : grow_once();
     if (is_solved) return Growth::SOLVED;
   }
 }
 
-/// Plant the start in the first tree and the goals in the second; leave out what is not free.
+/// Plant the start in the first tree and the goals in the second, without those that are not free.
 void TreePlanner::plant() {
   for (std::size_t first = 0; first < terminals_.rows; first += LANES) {
     const std::size_t some = std::min<std::size_t>(LANES, terminals_.rows - first);
     std::array<bool, LANES> inside{};
     for (std::size_t lane = 0; lane < LANES; lane++) {
-      // Lanes to spare repeat the last row.
+      // Unused lanes repeat the last row.
       std::ranges::copy(terminals_[first + std::min(lane, some - 1)], here_.begin());
       inside[lane] = enter(here_, checks_.joints);
-      // What is out of bounds may be too large for single precision.
+      // Values out of bounds may be too large for single precision.
       if (!inside[lane]) bring_inside(here_, checks_.joints);
       for (std::size_t k = 0; k < here_.size(); k++) checks_.state(k, lane) = here_[k];
     }
@@ -106,7 +106,7 @@ std::size_t TreePlanner::growing_tree() {
   return growing_;
 }
 
-/// Take the next steps of a tree, and go on from each towards the other; return whether they met.
+/// Take the next steps of a tree, and continue from each towards the other tree; return whether they met.
 bool TreePlanner::grow_once() {
   const std::size_t tree = growing_tree();
   Tree& own = trees_[tree];
@@ -122,20 +122,22 @@ bool TreePlanner::grow_once() {
     const Node other = other_end(tree, found);
     if (other == NO_NODE) continue;
     if (join(tree, found, other)) return true;
-    // The proof failed and took nodes away: the other steps know old numbers.
+    // The failed proof removed nodes, so the numbers of the other steps are no longer valid.
     if (have_met()) return false;
   }
   return false;
 }
 
-/// Return the node of the other tree to go on to: the nearest, with bounds of those where the path is short enough.
+/// Return the node of the other tree to connect to: the nearest one or, with bounds, the nearest with a short enough
+/// path.
 Node TreePlanner::other_end(std::size_t tree, Node found) const {
   const Tree &own = trees_[tree], &other = trees_[1 - tree];
   return bound_ == nullptr ? other.nearest(own[found])
                            : other.nearest_within(own[found], bound_->longest - own.cost(found));
 }
 
-/// Go from the start straight to a goal; return whether that makes a path, of one motion where it is proved as one.
+/// Try a straight motion from the start to a goal; return whether it makes a path, of one motion if it is proved as
+/// one.
 bool TreePlanner::join_straight(Node goal) {
   const Node last = reach(0, 0, goal);
   met_ = {last, last == NO_NODE ? NO_NODE : goal};
@@ -149,7 +151,7 @@ bool TreePlanner::join_straight(Node goal) {
   return true;
 }
 
-/// Go from a node to one of the other tree; return whether that makes a path of which every motion is proved.
+/// Connect a node to one of the other tree; return whether this makes a path with every motion proved.
 bool TreePlanner::join(std::size_t tree, Node found, Node other) {
   met_ = {NO_NODE, NO_NODE};
   const Node last = reach(tree, found, other);
@@ -160,9 +162,9 @@ bool TreePlanner::join(std::size_t tree, Node found, Node other) {
   return true;
 }
 
-/// Go from a node towards one of the other tree in equal steps, each a new node, until one is blocked.
+/// Extend a node towards one of the other tree in equal steps, each a new node, until one is blocked.
 ///
-/// Return the node from which the last step led to the other, or NO_NODE, also once the budget is spent.
+/// Return the node from which the last step reached the other, or NO_NODE, also when the budget is spent.
 Node TreePlanner::reach(std::size_t tree, Node found, Node other) {
   Tree& own = trees_[tree];
   std::ranges::copy(own[found], here_.begin()), std::ranges::copy(trees_[1 - tree][other], there_.begin());
@@ -172,7 +174,7 @@ Node TreePlanner::reach(std::size_t tree, Node found, Node other) {
     const bool is_last = step == steps;
     const double share = static_cast<double>(step) / static_cast<double>(steps);
     for (std::size_t k = 0; k < here_.size(); k++) target_[k] = is_last ? there_[k] : here_[k] + share * direction_[k];
-    // The other tree's node stays as it is: a root may exceed a limit by the slack.
+    // The other tree's node is not changed, because a root may exceed a limit by the slack.
     if (!is_last) bring_inside(target_, checks_.joints);
     if (is_spent()) return NO_NODE;
     if (!checks_.is_free(own[found], target_, is_last ? Known::BOTH_ENDPOINTS : Known::START)) return NO_NODE;
@@ -182,12 +184,12 @@ Node TreePlanner::reach(std::size_t tree, Node found, Node other) {
   return NO_NODE;
 }
 
-/// Return whether every motion of the path is proved free; branches behind those that are not go from the trees.
+/// Return whether every motion of the path is proved free; remove the subtrees behind motions that are not.
 ///
-/// A motion that was proved once is not looked at again; nor is any once the budget is spent.
+/// A motion is proved at most once, and none when the budget is spent.
 bool TreePlanner::is_path_proved() {
   if (is_spent()) return false;
-  // The motion between the trees first: it is the only one that can go without taking nodes along.
+  // The motion between the trees comes first, because its failure removes no nodes.
   bool is_proved = checks_.is_proved(trees_[0][met_[0]], trees_[1][met_[1]], PATH_PROOF);
   for (std::size_t tree = 0; tree < 2; tree++) is_proved &= is_branch_proved(tree, met_[tree]);
   return is_proved;
@@ -210,7 +212,7 @@ bool TreePlanner::is_branch_proved(std::size_t tree, Node leaf) {
   return false;
 }
 
-/// Write the way from the start to the goal that was reached, and which one this is.
+/// Write the path from the start to the goal that was reached, and the number of this goal.
 void TreePlanner::write_path() {
   std::vector<Node> nodes;
   for (Node node = met_[0]; node != NO_NODE; node = trees_[0].parent(node)) nodes.push_back(node);

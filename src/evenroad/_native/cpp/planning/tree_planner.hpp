@@ -1,8 +1,8 @@
 // RRT-Connect for arms: two trees grow from the start and from the goals until they meet.
 //
-// After J. Kuffner and S. LaValle, 2000, with an even sequence in place of random samples, and with steps around nodes
-// that were extended often enough: one batch of sixteen holds the middle and the end of eight of them, and only those
-// free at both are looked at in full.
+// The algorithm is that of J. Kuffner and S. LaValle, 2000, with an even sequence in place of random samples.  Nodes
+// that were extended often enough also get steps around them: one batch of sixteen has the middle and the end of eight
+// steps, and only steps free at both are checked in full.
 #pragma once
 
 #include <array>
@@ -18,28 +18,28 @@
 
 namespace evenroad::planning {
 
-/// What a call of `grow` ended with: its slice used up, the budget of motions spent, start or goals not free, or a path
+/// The outcome of a call of `grow`: its slice used up, the budget of motions spent, start or goals not free, or a path
 /// found.
 enum class Growth : std::uint8_t { PAUSED, SPENT, NOT_FREE, SOLVED };
 
 /// Two trees, which of them grows next, and where they met.
 class TreePlanner {
  public:
-  /// `terminals` are the start and the goals, of which the first are tried straight on.  Ends, sequences and the joints
-  /// of the checks must last as long as this.  With a bound, the path is shorter than that allows; each round is driven
-  /// by other points of the sequences.
+  /// `terminals` are the start and the goals; straight motions to the first goals are tried at once.  Terminals,
+  /// sequences and the joints of the checks must outlive this.  A bound limits the length of the path.  Each round uses
+  /// other points of the sequences.
   TreePlanner(Matrix<const double> terminals, const Sequences& sequences, MotionChecks& checks,
               const PathBound* bound = nullptr, std::size_t round = 0);
 
-  /// Plant the trees, and add the waypoints of a path of proved motions to this goal: to that of the start those up to
-  /// the first place along the path, to that of the goals those from the second on.  Call it before `grow`.
+  /// Plant the trees, and add the waypoints of a path of proved motions to this goal.  The tree of the start gets those
+  /// up to the first position along the path, the tree of the goals those from the second on.  Call it before `grow`.
   void begin_along(const Path& path, std::int64_t goal, double first, double second);
 
-  /// Grow until the trees meet, that many motions are spent, or about that many batches of sixteen were checked in this
-  /// call; the next call goes on.
+  /// Grow until the trees meet, this many motions are spent, or about this many batches of sixteen were checked in this
+  /// call; the next call continues.
   Growth grow(std::int64_t most_motions, std::int64_t batches);
 
-  /// The configurations from the start to the goal that was reached, one after the other; none without a path.
+  /// The configurations from the start to the goal that was reached, in sequence; none without a path.
   const std::vector<double>& path() const { return path_; }
 
   /// Which of the goals was reached, -1 without a path.
@@ -66,18 +66,18 @@ class TreePlanner {
   MotionChecks& checks_;
   const PathBound* bound_;
   TreeSteps steps_;
-  /// From the start, and from the goals.
+  /// The trees of the start and of the goals.
   std::array<Tree, 2> trees_;
-  /// Which of the goals the roots of the second tree are.
+  /// The goal of each root of the second tree.
   std::vector<std::int64_t> goals_;
   bool is_begun_ = false;
   std::size_t growing_ = 0;
-  /// How many goals were tried straight on.
+  /// Number of goals to which a straight motion was tried.
   Node straight_ = 0;
-  /// Where the trees met last: a node of each, or none.
+  /// The nodes at which the trees met last, one of each, or none.
   std::array<Node, 2> met_{NO_NODE, NO_NODE};
   std::int64_t most_motions_ = 0;
-  /// How often in a row the tree had no step to offer.
+  /// Number of times in a row that the tree offered no step.
   std::int64_t idle_ = 0;
   std::vector<double> here_, there_, direction_, target_;
   std::vector<double> path_;

@@ -1,4 +1,5 @@
-// A node gets a few extensions before it gets steps around it: from deep in a shelf few directions are free.
+// A node gets a few extensions before it gets steps around it, which help deep in a shelf, where few directions are
+// free.
 #include "planning/tree_steps.hpp"
 
 #include <algorithm>
@@ -11,16 +12,16 @@ namespace evenroad::planning {
 
 namespace {
 
-/// A node is extended so often before it gets steps around it.
+/// Number of extensions of a node before it gets steps around it.
 constexpr std::int64_t EXTENSIONS = 3;
 
-/// Steps are this share of the root of the mean squared range of the joints, and no longer than the second [rad].
+/// Length of steps as a share of the root mean square range of the joints, and largest length [rad].
 constexpr double STEP_SHARE = 1.0 / 5.8, LONGEST_STEP = 1.5;
 
-/// Steps around a node are within this many steps, but for the largest [rad].
+/// Radius of the steps around a node, in steps, and largest radius [rad].
 constexpr double BALL_SHARE = 1.5, LARGEST_BALL = 2.0;
 
-/// So many steps of the sequence are rounds apart.
+/// Number of points of the sequence between two rounds.
 constexpr std::size_t BETWEEN_ROUNDS = 1279;
 
 double longest_step(const robot::Joints& joints) {
@@ -62,9 +63,11 @@ std::span<const Step> TreeSteps::next(Tree& tree, std::size_t side, std::size_t 
   return ball_steps(tree, side, origin, most, checks);
 }
 
-/// Return the node nearest to the sample; with bounds, of those from which it is not too far from the root.
+/// Return the node nearest to the sample; with bounds, the nearest one through which the sample is near enough to the
+/// root.
 ///
-/// How far it may be is even between the least and the most: so ways from the root become as short as needed.
+/// The bound is spread evenly between the least and the largest cost, so that paths from the root become as short as
+/// needed.
 Node TreeSteps::closest(const Tree& tree, std::size_t side) const {
   if (bound_ == nullptr) return tree.nearest(sample_);
   const double least = bound_->distance(sample_, side);
@@ -128,7 +131,7 @@ std::span<const Step> TreeSteps::ball_steps(Tree& tree, std::size_t side, Node c
   for (std::size_t i = 0; i < most; i++) {
     if (!is_kept[i]) continue;
     if (touching[2 * i] || touching[2 * i + 1]) {
-      // A motion that was queried, and is blocked.
+      // The motion was checked, and is blocked.
       checks.counts.motions++;
     } else {
       std::swap(offered_[kept++], offered_[i]);

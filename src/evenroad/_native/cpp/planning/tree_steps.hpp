@@ -1,4 +1,4 @@
-// Where a tree grows next: towards the next point of an even sequence, or by eight steps around its nodes at once.
+// The next steps of a tree: towards the next point of an even sequence, or eight steps around its nodes at once.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace evenroad::planning {
 /// Multiples of the golden ratio, without their integers, fill 0 to 1 evenly.
 inline constexpr double GOLDEN = 0.6180339887498949;
 
-/// So many steps around nodes are offered at once: the middle and the end of each are a batch of sixteen.
+/// Number of steps around nodes offered at once: the middle and the end of each make a batch of sixteen.
 inline constexpr std::size_t STEPS_AT_ONCE = LANES / 2;
 
 /// A motion that would add a node at `target`.
@@ -28,23 +28,23 @@ struct Step {
 
 /// Even sequences in place of random numbers, used in turn.
 struct Sequences {
-  /// Of the unit cube.  After the last point it goes on from the first, each time shifted a little further.
+  /// Points of the unit cube.  After the last point it repeats from the first, each time with a larger shift.
   Matrix<const double> samples;
-  /// Of the unit ball.
+  /// Points of the unit ball.
   Matrix<const double> steps;
 };
 
 /// Offers the next steps of a tree.
 class TreeSteps {
  public:
-  /// With bounds on paths, steps stay where these allow.  Each round takes other points of the sequences.
+  /// Bounds on paths limit the steps.  Each round uses other points of the sequences.
   TreeSteps(const robot::Joints& joints, const Sequences& sequences, const PathBound* bound, std::size_t round);
 
-  /// No step of a tree is longer.
+  /// Longest step of a tree.
   double longest() const { return longest_; }
 
-  /// Return where a tree, 0 that of the start, may go next: one extension, or of at most `most` steps those free in
-  /// the middle and at the end.
+  /// Return the next steps of a tree, 0 for that of the start: one extension, or those of at most `most` steps that are
+  /// free in the middle and at the end.
   std::span<const Step> next(Tree& tree, std::size_t side, std::size_t most, MotionChecks& checks);
 
  private:
@@ -58,7 +58,7 @@ class TreeSteps {
   Sequences sequences_;
   const PathBound* bound_;
   double longest_;
-  /// Of the ball of steps, along each coordinate.
+  /// Radius of the ball of steps along each coordinate.
   std::vector<double> radii_;
   std::size_t next_sample_ = 0, next_step_ = 0;
   std::vector<double> sample_, direction_;

@@ -1,4 +1,4 @@
-// The shortest paths touch what they pass.  From a path that does not, it is not far to one that does.
+// The shortest paths touch obstacles.  The smoothing of a path that keeps away gives one that touches in a short time.
 #include "planning/with_clearance.hpp"
 
 #include <utility>
@@ -9,12 +9,12 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Paths that are looked for twice are not drawn as tight as can be: half of the time for .2 % of the length.  The
-/// second time begins where the first ended.
+/// Each of the two smoothings is shorter than a full one, which saves half of the time for 0.2 % of the length.  The
+/// second one begins with the result of the first.
 Sliding first_time(std::int64_t most_batches) { return {most_batches, 8, 3}; }
 Sliding second_time(std::int64_t most_batches) { return {most_batches, 8, 2}; }
 
-/// By this share a path may be longer that keeps away from obstacles.
+/// Largest share by which a path that keeps away from obstacles may be longer.
 constexpr double LONGER = 0.02;
 
 /// Return whether both ends of a path are free.

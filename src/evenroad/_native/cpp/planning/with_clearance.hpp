@@ -1,4 +1,4 @@
-// The one rule by which a path keeps away from obstacles: where that is hardly longer.
+// The rule by which a path keeps away from obstacles: if it is hardly longer.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace evenroad::planning {
 
-/// Return the length of a path as the space of the joints measures it.
+/// Return the length of a path in the metric of the joints.
 double length_of(const std::vector<double>& points, const robot::Joints& joints);
 
-/// Draw a path tight, all motions of which are proved: first in a world with more room around obstacles, and from there
-/// on in its own.  This second path is kept where it is shorter by so much that keeping away costs more than 2 %.
+/// Smooth a path of proved motions, first in a world with more clearance, then again in its own.  The second path is
+/// the answer if the clearance costs more than 2 % of the length.
 ///
-/// Where an end has not that much room, or the first path is not proved there, the path is smoothed in its own world.
+/// If an endpoint has less clearance, or the first path is not proved there, the path is smoothed in its own world.
 /// Return whether it keeps away.
 bool smooth_with_clearance(Path& path, const Guides& guides, std::int64_t most_batches, MotionChecks& checks,
                            MotionChecks& roomier);
