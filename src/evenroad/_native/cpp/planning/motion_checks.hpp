@@ -50,8 +50,8 @@ class MotionChecks {
   /// Coordinate k of the configuration in a lane, for `touching`, which does not change it.
   double& state(std::size_t k, std::size_t lane) { return states_[k * LANES + lane]; }
 
-  /// Return which of the sixteen configurations touch something.  Lanes in `settled` count as touching.  Neighbours
-  /// that are wanted together may all count if one of them touches something.
+  /// Return which of the sixteen configurations touch something.  Lanes in `idle` count as touching.  Neighbours that
+  /// are wanted together may all count if one of them touches something.
   Touching touching(robot::Mask idle = 0, Wanted wanted = Wanted::ALL) {
     return {robot::blocked(*workspace_, wanted, idle)};
   }

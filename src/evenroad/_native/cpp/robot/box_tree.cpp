@@ -10,10 +10,10 @@ namespace evenroad::robot {
 
 namespace {
 
-/// More places are sorted along a curve, in a tenth of the time that halving takes.
+/// Number of points above which they are sorted along a curve, in a tenth of the time of halving.
 constexpr std::size_t MANY_POINTS = 1 << 14;
 
-/// Bring the lesser ones along an axis before place `middle`, of those from `low` to `high` (C. Hoare, 1961).
+/// Move the smaller ones along an axis before index `middle`, among those from `low` to `high` (C. Hoare, 1961).
 void split(std::vector<Point3>& points, std::vector<int>& order, int low, int high, int middle, int axis) {
   while (low < high) {
     const float a = points[low].at[axis], b = points[(low + high) / 2].at[axis], c = points[high].at[axis];
@@ -47,8 +47,8 @@ Numbers spread_bits(Numbers a) {
   return (a | a << 2) & 0x09249249;
 }
 
-/// Return where sixteen cells, of 1024 along each axis, are on Hilbert's curve (J. Skilling, Programming the Hilbert
-/// curve, 2004).
+/// Return the positions of sixteen cells, of 1024 along each axis, on Hilbert's curve (J. Skilling, Programming the
+/// Hilbert curve, 2004).
 Numbers along_curve(Numbers (&cell)[3]) {
   for (std::uint32_t bit = 512; bit > 1; bit >>= 1) {
     const std::uint32_t below = bit - 1;
@@ -67,7 +67,7 @@ Numbers along_curve(Numbers (&cell)[3]) {
   return spread_bits(cell[0]) << 2 | spread_bits(cell[1]) << 1 | spread_bits(cell[2]);
 }
 
-/// Return the order of places along that curve: sorted by three digits of ten bits.
+/// Return the order of points along that curve, sorted by three digits of ten bits.
 std::vector<int> order_along_curve(std::span<const Point3> points) {
   float low[3], high[3];
   for (int axis = 0; axis < 3; axis++) {

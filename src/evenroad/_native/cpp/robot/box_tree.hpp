@@ -1,6 +1,7 @@
-// Trees of boxes over what lies around a robot: a leaf is sixteen neighbours, a node sixteen leaves or nodes in a row.
+// Trees of boxes over obstacles, points or triangles.  A leaf has sixteen neighbours, a node sixteen leaves or nodes in
+// a row.
 //
-// The tree is in the order of its leaves alone.  Points, triangles and obstacles have leaves of their own.
+// The tree depends only on the order of its leaves.  Points, triangles and obstacles have different leaves.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +19,10 @@ struct BoxNode {
 };
 
 struct BoxTree {
-  std::vector<std::vector<BoxNode>> levels;  // from that above the leaves to that of the root
+  std::vector<std::vector<BoxNode>> levels;  // from the level above the leaves to that of the root
 };
 
-/// Where the places to spare of a leaf or node are.
+/// Coordinate of unused slots in a leaf or node.
 constexpr float NOWHERE = 1e9F;
 
 struct Point3 {
@@ -33,24 +34,24 @@ struct Around {
   float centre[3], half[3], radius;
 };
 
-/// Return an order in which sixteen, or 256, ... neighbours are near each other.
+/// Return an order in which groups of sixteen, 256, ... neighbours are near each other.
 std::vector<int> order_of(std::vector<Point3> points);
 
-/// Return the box and ball around sixteen places, or around sixteen boxes, by so much wider.
+/// Return the box and ball around sixteen points, or around sixteen boxes, widened by a length.
 Around around_points(std::span<const Point3> points);
 Around around_boxes(std::span<const Around> children, float wider);
 
-/// Return the tree over some leaves, in their order; what each level adds is so much wider.
+/// Return the tree over leaves, in their order; each level is widened by a length.
 BoxTree make_box_tree(std::vector<Around> leaves, float wider);
 
-/// A capsule at one configuration, and how near to its segment something touches it.
+/// A capsule at one configuration, and the distance from its segment at which an obstacle touches it.
 struct CapsuleAt {
   Vec3 centre, half;
   float one_by_squared;  // one over the squared half length
   float reach;
 };
 
-/// Return which of a node's boxes meet that around a capsule, and with their balls the capsule itself.
+/// Return which of a node's boxes overlap the box around a capsule, and have balls that touch the capsule.
 EVENROAD_INLINE std::uint32_t near_nodes(const BoxNode& node, const CapsuleAt& capsule) {
   const auto [x, y, z] = capsule.half;
   const float reach = capsule.reach;
@@ -68,7 +69,7 @@ class Walk {
  public:
   explicit Walk(const BoxTree& tree) : levels_(tree.levels), level_(static_cast<int>(levels_.size()) - 1) {}
 
-  /// Return the next leaf below nodes that `query` returns as a mask of those of a node that matter, or -1.
+  /// Return the next leaf, or -1.  `query` returns the mask of a node's children to visit.
   template <class Query>
   int next(Query&& query) {
     if (fresh_) near_ = query(levels_[level_][node_]), fresh_ = false;

@@ -7,7 +7,7 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Take a pose to the frame that is at `next` in its frame, turned about z and moved along z.
+/// Move a pose to the frame at `next` in it, after a turn about z and a shift along z.
 void go_on(Pose& pose, const Pose& next, double sine, double cosine, double slide) {
   const auto& r = next.rotation;
   for (int axis = 0; axis < 3; axis++) {

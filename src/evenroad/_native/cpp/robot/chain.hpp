@@ -9,7 +9,7 @@
 
 namespace evenroad::robot {
 
-/// Where a frame is in another: its rotation row by row, and its origin.
+/// The pose of a frame in another: its rotation row by row, and its origin.
 struct Pose {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
   Vector origin{};
@@ -17,7 +17,7 @@ struct Pose {
 
 /// A joint turns about, or slides along, the z axis of its frame.
 struct ChainJoint {
-  Pose before;  // in the frame of the joint before, where its value is 0
+  Pose before;  // in the frame of the joint before, at the value 0
   int coordinate;
   bool slides;
   double multiplier, offset;  // its value is multiplier * coordinate + offset
@@ -29,15 +29,14 @@ struct Axis {
 };
 
 struct Chain {
-  int dim;  // of a configuration; not all of its coordinates need be here
+  int dim;  // of a configuration; the chain need not use all coordinates
   std::vector<ChainJoint> joints;
   Pose tip;  // in the frame of the last joint
 
-  /// Return where the tip is, and write where the axes of all joints are, in the root's frame.
+  /// Return the pose of the tip, and write the axes of all joints, in the root's frame.
   Pose tip_pose(std::span<const double> q, std::span<Axis> axes) const;
 
-  /// Write how the tip moves and turns with each coordinate, (6, dim), in the root's frame, from where it and the axes
-  /// are.
+  /// Write the Jacobian of the tip, (6, dim), in the root's frame, from its pose and the axes.
   void write_derivative(const Pose& tip, std::span<const Axis> axes, std::span<double> derivative) const;
 };
 

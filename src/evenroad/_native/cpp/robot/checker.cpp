@@ -115,7 +115,7 @@ Mask blocked(Workspace& workspace, Wanted wanted, Mask settled) {
 Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count) {
   const Joints& joints = workspace.checker.robot().joints;
   const double* row[LANES];
-  // Lanes to spare repeat the last row.
+  // Unused lanes repeat the last row.
   for (std::size_t lane = 0; lane < LANES; lane++) row[lane] = rows[first + std::min(lane, count - 1)].data();
   Mask outside = 0;
   for (std::size_t k = 0; k < rows.columns; k++) {
@@ -124,7 +124,7 @@ Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t firs
     if (joints.wraps(k)) {
       for (int lane = 0; lane < LANES; lane++) value[lane] = wrapped(value[lane], joints, k);
     }
-    // What is out of bounds may be too large for single precision.
+    // Values out of bounds may be too large for single precision.
     const double low = joints.low[k] - JOINT_SLACK, high = joints.high[k] + JOINT_SLACK;
     workspace.states[k] = ((value >= low) & (value <= high)) ? value : Doubles16{} + joints.low[k];
     outside |= below_zero(__builtin_convertvector(min(value - low, high - value), Floats16));

@@ -1,7 +1,7 @@
 // A robot in a scene, and the memory in which one thread checks its configurations and motions.
 //
-// How planners sit on this (trees, smoothing, roadmaps): `planning/motion_checks.hpp` says it in their words.  What is
-// here of one thread's checks:
+// `planning/motion_checks.hpp` is the interface of planners (trees, smoothing, roadmaps) to it.  The checks of one
+// thread are these:
 //
 //   const Borrowed workspace = checker.borrow();    memory, given back at the end of the scope
 //   workspace->set(lane, q), ->set_all(q)           write configurations, within bounds, into the sixteen lanes
@@ -11,8 +11,8 @@
 //   workspace->counts                               how many motions, configurations and batches were checked
 //   workspace->judge_by(&checker.wider(margin))     larger bodies until judge_by(nullptr)
 //
-// Results depend on the arguments alone, not on what the workspace was used for before.  Nothing here
-// takes memory once a workspace is made, and nothing throws but where the time is over.
+// Results depend only on the arguments, not on earlier uses of the workspace.  After a workspace is made, nothing here
+// allocates memory, and nothing throws except when the time is over.
 #pragma once
 
 #include <memory>
@@ -26,12 +26,12 @@
 
 namespace evenroad::robot {
 
-/// What was checked: motions, configurations, and batches of sixteen.
+/// Numbers of checks: motions, configurations, and batches of sixteen.
 struct Counts {
   std::int64_t motions = 0, configurations = 0, batches = 0;
 };
 
-/// Batches between two looks at the clock, which takes as long as a hundredth of one.
+/// Number of batches between two looks at the clock.  A look takes a hundredth of the time of a batch.
 inline constexpr int BATCHES_A_LOOK = 4;
 
 struct Workspace;
@@ -46,8 +46,8 @@ using Borrowed = std::unique_ptr<Workspace, Return>;
 
 class Checker {
  public:
-  /// Bodies are larger by `clearance` where obstacles are concerned.  Nothing is free where `touches_itself`, bodies
-  /// that no joint moves against each other, or what does not move touches the scene.
+  /// Bodies are larger by `clearance` for obstacles.  Nothing is free if `touches_itself` (bodies that no joint moves
+  /// relative to each other touch), or if a fixed body touches the scene.
   Checker(std::shared_ptr<const Robot> robot, std::shared_ptr<const Scene> scene, double resolution, double clearance,
           bool touches_itself);
   Checker(const Checker&) = delete;
@@ -59,13 +59,13 @@ class Checker {
   const Scene& scene() const { return *scene_; }
   const Lengths& lengths() const { return lengths_; }
   double resolution() const { return resolution_; }  // largest distance between neighbouring states of a motion
-  const Contact& fixed_contact() const { return fixed_contact_; }  // of what does not move with the scene
+  const Contact& fixed_contact() const { return fixed_contact_; }  // of fixed bodies with the scene
   bool is_never_free() const { return never_free_; }
 
-  /// Return lengths larger by a margin, for obstacles alone; they last as long as the checker.
+  /// Return lengths larger by a margin, for obstacles only; they live as long as the checker.
   const Lengths& wider(float margin) const;
 
-  /// Return memory for one thread: one that was given back, or a new one.
+  /// Return the memory of one thread: one that was returned before, or a new one.
   Borrowed borrow() const;
 
  private:
@@ -89,7 +89,7 @@ struct Workspace {
   void set(int lane, std::span<const double> q);
   void set_all(std::span<const double> q);
 
-  /// Let states be judged by these lengths, which must outlive that; without any by those of the checker.
+  /// Check states with these lengths, which must outlive the checks; null means those of the checker.
   void judge_by(const Lengths* other) { lengths = other != nullptr ? other : &checker.lengths(); }
 
   const Checker& checker;
@@ -103,30 +103,30 @@ struct Workspace {
   Counts counts;
   ClockWatch clock{BATCHES_A_LOOK};
 
-  /// Count a batch of sixteen, which may be one too many for the time that there is.
+  /// Count a batch of sixteen; throw if the time is over.
   void begin_batch() {
     counts.batches++;
     clock.look();
   }
 };
 
-/// Write rows, (n, dim), from number `first` on into the lanes, and return the mask of those that are out of bounds:
-/// these are brought within.
+/// Write rows, (n, dim), from number `first` on into the lanes.  Return the mask of those out of bounds, which are
+/// brought within.
 Mask take_rows(Workspace& workspace, Matrix<const double> rows, std::size_t first, std::size_t count);
 
-/// Return the mask of the sixteen states that touch something, or are settled, with those wanted together with them;
-/// with Wanted::FIRST of some of them.
+/// Return the mask of the sixteen states that touch something or are settled, with those wanted together with them.
+/// With Wanted::FIRST, only some of them are found.
 Mask blocked(Workspace& workspace, Wanted wanted, Mask settled = 0);
 Mask blocked(Workspace& workspace, const Lengths& lengths, Wanted wanted, Mask settled = 0);
 
-/// The same where the workspace's places are those of the states already.
+/// The same if the workspace's placed robot already has these states.
 Mask blocked_where_placed(Workspace& workspace, Wanted wanted);
 Mask blocked_where_placed(Workspace& workspace, const Lengths& lengths, Wanted wanted);
 
 /// Write which rows, (n, dim), are within bounds and free.
 void configurations_free(const Checker& checker, Matrix<const double> rows, std::span<bool> free);
 
-/// Return what touches first at a configuration within bounds.
+/// Return the first contact at a configuration within bounds.
 Contact find_contact(const Checker& checker, std::span<const double> q);
 
 }  // namespace evenroad::robot

@@ -1,4 +1,4 @@
-// Corners and edges are found again in tables by what they are; triangles with one edge in common face the same way.
+// Hash tables find equal corners and edges.  Triangles with a common edge must face the same way.
 #include "robot/closed_parts.hpp"
 
 #include <algorithm>
@@ -22,12 +22,12 @@ std::uint64_t mixed(std::uint64_t key) {
   return key ^ key >> 31;
 }
 
-/// Numbers of things in a table of twice as many places, or more: the next free one where another is there.
+/// A hash table of numbers with at least twice as many slots; a collision goes to the next free slot.
 class Table {
  public:
   explicit Table(std::size_t most) : slots_(std::bit_ceil(2 * most + 2), -1) {}
 
-  /// Return the number of the thing with this key, `fresh` where `is_same` says of none that was put in that it is one.
+  /// Return the number of the entry with this key, or `fresh` if `is_same` holds for no entry.
   template <class IsSame>
   Number find(std::uint64_t key, Number fresh, IsSame&& is_same) {
     for (std::size_t i = key & (slots_.size() - 1);; i = (i + 1) & (slots_.size() - 1)) {
@@ -40,7 +40,7 @@ class Table {
   std::vector<Number> slots_;
 };
 
-/// Return for each vertex the first one that is at its place.
+/// Return for each vertex the first one at the same position.
 std::vector<Number> first_at_point(std::span<const double> vertices) {
   const std::size_t count = vertices.size() / 3;
   Table table(count);
@@ -48,7 +48,7 @@ std::vector<Number> first_at_point(std::span<const double> vertices) {
   for (std::size_t i = 0; i < count; i++) {
     const double* here = &vertices[3 * i];
     std::uint64_t key = 0;
-    // 0.0 and -0.0 are one place.
+    // 0.0 and -0.0 are the same position.
     for (int axis = 0; axis < 3; axis++) key = mixed(key + std::bit_cast<std::uint64_t>(here[axis] + 0.0));
     first[i] = table.find(key, static_cast<Number>(i), [&](Number other) {
       const double* there = &vertices[3 * static_cast<std::size_t>(other)];
@@ -63,7 +63,7 @@ using Corners = std::array<Number, 3>;
 
 struct Edge {
   Number low, high;
-  Number times = 0, once = 0;    // how many sides it is, and without those of triangles that are there again
+  Number times = 0, once = 0;    // number of its sides, and the number without those of repeated triangles
   Number first = -1, last = -1;  // sides of it: of closed parts, and once each
   Number counted = 0;            // how many such there are
 };
@@ -73,7 +73,7 @@ struct Mesh {
   std::vector<Corners> triangles;
   std::vector<Edge> edges;
   std::vector<Number> edge_of;      // of each side of each triangle, -1 of one that has two equal corners
-  std::vector<std::uint8_t> again;  // which triangles are there before
+  std::vector<std::uint8_t> again;  // which triangles repeat earlier ones
   std::vector<Number> parts;        // sets of corners
 
   Number part(std::size_t triangle) { return root_of(parts, triangles[triangle][0]); }
@@ -83,7 +83,7 @@ struct Mesh {
   }
 };
 
-/// Return which triangles have the corners of an earlier one.
+/// Return which triangles repeat the corners of an earlier one.
 std::vector<std::uint8_t> found_again(const std::vector<Corners>& triangles) {
   std::vector<std::uint8_t> again(triangles.size());
   std::vector<Corners> sorted = triangles;
@@ -122,17 +122,17 @@ Mesh mesh_of(std::span<const double> vertices, std::span<const std::int64_t> row
       mesh.edge_of[3 * i + k] = number, most = std::max(most, ++mesh.edges[number].times);
     }
   }
-  // A triangle that is there twice in a closed part has edges of three.
+  // A triangle that occurs twice in a closed part has edges of three triangles.
   mesh.again = most > 2 ? found_again(mesh.triangles) : std::vector<std::uint8_t>(mesh.triangles.size());
   return mesh;
 }
 
-/// Triangles that face the same way once some are turned.
+/// Sets of triangles that face the same way once some are flipped.
 class Facing {
  public:
   explicit Facing(std::size_t count) : above_(sets_of_one(count)), turned_(count) {}
 
-  /// Return the first of those that hang together with a triangle, and whether one of the two has to be turned.
+  /// Return the root of a triangle's set, and whether one of the two must be flipped.
   std::pair<Number, std::uint8_t> root(Number i) {
     Number top = i;
     std::uint8_t turned = 0;
@@ -145,7 +145,7 @@ class Facing {
     return {top, turned};
   }
 
-  /// Return false where two cannot face the same way.
+  /// Return false if two triangles cannot face the same way.
   bool join(Number a, Number b, bool differ) {
     const auto [first, one] = root(a);
     const auto [second, other] = root(b);
@@ -159,7 +159,7 @@ class Facing {
   std::vector<std::uint8_t> turned_;  // from the one above
 };
 
-/// Write which triangles bound closed parts, and find these at their edges.
+/// Write which triangles bound closed parts, which are found by their edges.
 void find_closed(Mesh& mesh, std::size_t corners, ClosedParts& made) {
   std::vector<std::uint8_t> is_open(corners), is_open_once(corners);
   for (std::size_t side = 0; side < mesh.edge_of.size(); side++) {
@@ -184,7 +184,7 @@ void find_closed(Mesh& mesh, std::size_t corners, ClosedParts& made) {
   }
 }
 
-/// Return which parts, by their roots, are not as many surfaces as hang together by edges of two triangles.
+/// Return which parts, by their roots, do not split into the surfaces that edges of two triangles connect.
 std::vector<std::uint8_t> find_tangled(Mesh& mesh, std::size_t corners, const ClosedParts& made, Facing& facing) {
   std::vector<std::uint8_t> is_tangled(corners);
   for (const Edge& edge : mesh.edges) {
@@ -192,7 +192,7 @@ std::vector<std::uint8_t> find_tangled(Mesh& mesh, std::size_t corners, const Cl
     const bool differ = mesh.is_upward(edge.first) == mesh.is_upward(edge.last);
     if (!facing.join(edge.first / 3, edge.last / 3, differ)) is_tangled[root_of(mesh.parts, edge.low)] = 1;
   }
-  // At edges of more triangles those of each surface have to run in both directions equally often.
+  // At edges of more triangles, those of each surface must run in both directions equally often.
   struct Side {
     Number edge, surface;
     int turn;
@@ -230,20 +230,20 @@ std::vector<std::uint8_t> find_unturned(Mesh& mesh, std::size_t corners, const C
   return is_unturned;
 }
 
-/// Shells of a mesh, and of each triangle the one that it belongs to, or -1, and whether it has to be turned within it.
+/// Shells of a mesh, and for each triangle its shell, or -1, and whether it must be flipped within it.
 struct Shells {
   std::vector<Shell> all;
   std::vector<Number> of;
   std::vector<std::uint8_t> turned;
 };
 
-/// Return the shells, or none where sides of a closed part do not tell inside from outside.
+/// Return the shells, or none if sides of a closed part do not distinguish inside from outside.
 Shells find_shells(Mesh& mesh, std::size_t corners, ClosedParts& made) {
   Facing facing(mesh.triangles.size());
   const std::vector<std::uint8_t> is_tangled = find_tangled(mesh, corners, made, facing);
   const std::vector<std::uint8_t> is_unturned = find_unturned(mesh, corners, made);
   Shells shells{{}, std::vector<Number>(mesh.triangles.size(), -1), std::vector<std::uint8_t>(mesh.triangles.size())};
-  // By the root of the surface, or that of a tangled part.
+  // Indexed by the root of the surface, or of a tangled part.
   std::vector<Number> of_surface(mesh.triangles.size(), -1), of_part(corners, -1);
   for (std::size_t i = 0; i < mesh.triangles.size(); i++) {
     if (made.closed[i] == 0) continue;

@@ -1,4 +1,4 @@
-// Which triangles of a mesh enclose something, and how they have to face so that what they wind around is solid.
+// The closed parts of a mesh: which triangles enclose a solid, and which must be flipped so that it is inside.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace evenroad::robot {
 
-/// Which triangles bound what is solid, which of these have to be turned, and which are the first of their part.
+/// The triangles that bound solids, those of them to flip, and the first one of each part.
 ///
-/// A part, of triangles that share corners, is closed if every edge belongs to an even number of triangles.  Corners at
-/// one place are one; a triangle that is there again does not count where the part is closed without it, nor does one
-/// without an area.  Turned triangles wind around all that is inside of closed surfaces, but for hollows: surfaces that
-/// lie within others, and face the other way or to both sides.
+/// A part is a set of triangles that share corners; equal corners count as one.  It is closed if every edge belongs to
+/// an even number of triangles.  A repeated triangle does not count if the part is closed without it, nor does one
+/// without area.  Flipped triangles wind around everything inside of closed surfaces, except hollows: surfaces within
+/// others that face the other way, or to both sides.
 struct ClosedParts {
   std::vector<std::uint8_t> closed, turned, first;
   bool oriented = true;  // whether these can be turned so that sides tell; else what is inside is crossed oddly often

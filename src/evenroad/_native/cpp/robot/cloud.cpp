@@ -1,4 +1,4 @@
-// Of a cloud what a robot can reach, as a surface.
+// The part of a cloud that a robot can reach, as a surface.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +22,7 @@ std::vector<double> moved(std::span<const double> points, std::span<const double
 }  // namespace
 
 std::optional<Surface> make_cloud(const GivenCloud& given) {
-  // A frame of a camera is not copied more often than it must be.
+  // A camera frame is copied as rarely as possible.
   std::vector<double> there;
   std::span<const double> points = given.points;
   if (!std::ranges::equal(given.rotation, STRAIGHT) || !std::ranges::equal(given.xyz, HERE)) {

@@ -10,8 +10,8 @@
 
 namespace evenroad::robot {
 
-/// Solve a system of which the lower triangle is given, by Cholesky's factor, which takes its place; no pivot is less
-/// than the damping, but for rounding.  The right side becomes the solution.
+/// Solve a system, given by its lower triangle, by Cholesky factorisation in place.  Up to rounding, no pivot is less
+/// than the damping.  The solution replaces the right side.
 EVENROAD_INLINE void solve_damped(Matrix<double> square, std::span<double> right, double damping) {
   const std::size_t n = right.size();
   for (std::size_t i = 0; i < n; i++) {

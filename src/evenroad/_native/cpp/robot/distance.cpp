@@ -1,5 +1,5 @@
-// Distances of spheres and capsules are computed.  Of what is only known to come within a margin or not, the margin is
-// bisected: only where the bodies around it are nearer than all before.
+// Distances of spheres and capsules are computed.  For other shapes only a test within a margin exists, so the margin
+// is bisected, but only if the bodies around the shape are nearer than all before.
 #include "robot/distance.hpp"
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace evenroad::robot {
 
 namespace {
 
-/// A bisected distance is that much too small at most; and what is nearer touches [m].
+/// Largest error of a bisected distance, which is too small; nearer bodies count as touching [m].
 constexpr float TOLERANCE = 1e-6F;
 
-/// The least distances so far at sixteen configurations, and of what they are.
+/// The least distances so far at sixteen configurations, and the bodies that have them.
 struct Nearest {
   Floats16 least;
   std::array<Contact, LANES> contacts;
@@ -28,7 +28,8 @@ struct Nearest {
     least = min(distance, least);
   }
 
-  /// Bisect, in lanes that are no nearer than `low`, what `meet(near, lane)` finds within a margin, or nothing.
+  /// Bisect the distance in lanes that are not nearer than `low`; `meet(near, lane)` returns a contact within a margin,
+  /// or none.
   template <class Meet>
   void bisect(Mask lanes, Floats16 low, Meet&& meet) {
     for (; lanes != 0; lanes &= lanes - 1) {

@@ -1,18 +1,17 @@
-// How far configurations are from contact.
+// Distances of configurations from contact.
 #pragma once
 
 #include "robot/checker.hpp"
 
 namespace evenroad::robot {
 
-/// Write the least distance, and of what, of each row, (n, dim): of bodies that move from obstacles, and of the two
-/// bodies of each pair, unless only obstacles count [m].
+/// Write the least distance of each row, (n, dim), and the bodies that have it: distances of moving bodies from
+/// obstacles and, unless only obstacles count, between the bodies of each pair [m].
 ///
-/// Bodies are as they are, without the checker's clearance: capsules, covered by spheres where boxes, cylinders and
-/// what is round are concerned, or the true shapes that decide in their place; and hulls where they decide.  A distance
-/// is never too large, and too small by some micrometres at most.  It is 0 where something touches, and `most`, of
-/// nothing, where all is farther; the scene has to be one of a clearance of `most`.  That of a row out of bounds is no
-/// number.
+/// Bodies have no clearance.  They are capsules, or the true shapes or hulls that decide in their place; for boxes,
+/// cylinders and round obstacles, spheres cover the capsules.  A distance is never too large, and at most some
+/// micrometres too small.  It is 0 at contact, and `most`, without bodies, if everything is farther; the scene must
+/// have been made for a clearance of `most`.  The distance of a row out of bounds is NaN.
 void write_distances(const Checker& checker, Matrix<const double> rows, double most, bool to_itself,
                      std::span<double> metres, std::span<Contact> nearest);
 

@@ -1,4 +1,4 @@
-// Obstacles as they are given, and how they become rows in single precision, a little larger.
+// Obstacles in double precision, and their rows in single precision, which are slightly larger.
 #include "robot/exact_obstacle.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace evenroad::robot {
 namespace {
 
 constexpr float NEVER_HIT = -1e30F;  // half extent that fills unused places of a block
-constexpr double LARGEST = 1e6;      // no length may be larger [m]: single precision would leave decimetres
+constexpr double LARGEST = 1e6;      // largest length [m]; beyond it the error of single precision is decimetres
 
 /// Return whether a rotation takes axes to axes, up to the rounding of sines of right angles.
 bool is_straight(const double* rotation) {
@@ -56,8 +56,8 @@ void add_row(Obstacles& all, const Obstacle& obstacle, Vec3 half) {
 
 }  // namespace
 
-/// A box along the axes loses what lies far beyond `reach`, where the robot never comes: a floor of a hundred metres
-/// would else cost digits, of which single precision has seven.
+/// Cut off the parts of a box along the axes that lie far beyond the robot's `reach`.  A floor of a hundred metres
+/// would otherwise cost digits, of which single precision has seven.
 Exact exact(const GivenObstacle& given, double reach) {
   const auto kind = static_cast<GivenKind>(static_cast<int>(given.kind));
   Exact made{};

@@ -5,8 +5,7 @@
 
 namespace evenroad::robot {
 
-/// Single precision makes an obstacle uncertain by less than this share of its farthest point's distance from the
-/// origin.
+/// Bound of an obstacle's error in single precision, as a share of its farthest point's distance from the origin.
 constexpr double OBSTACLE_PADDING = 2.5e-7;
 /// All points within a rounding of a box, or a cylinder, in double precision.
 struct Exact {
@@ -23,13 +22,13 @@ double squared_distance(const Exact& o, const double* point);
 /// Write half extents of the box around an obstacle.
 void write_extents(const Exact& o, double (&extents)[3]);
 
-/// Return whether an obstacle is too far or too large: boxes along the axes are cut off where the robot never comes.
+/// Return whether an obstacle is too far or too large; boxes along the axes are cut off beyond the robot's reach.
 bool is_too_far(const GivenObstacle& given);
 
-/// Add an obstacle, larger by what single precision loses, and return by how much.
+/// Add an obstacle, enlarged by the error of single precision, and return that error.
 double add(Obstacles& all, const Exact& o, int number);
 
-/// Add one of other obstacles as it is there.
+/// Add a copy of another table's obstacle.
 void add_again(Obstacles& all, const Obstacles& others, int row);
 
 }  // namespace evenroad::robot

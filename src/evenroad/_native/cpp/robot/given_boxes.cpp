@@ -8,7 +8,7 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Of others the square of a quaternion's norm may have too few digits.
+/// Range of norms; outside of it the squared norm of a quaternion may have too few digits.
 constexpr double LEAST_NORM = 1e-200, MOST_NORM = 1e200;
 
 /// Write the matrix of a quaternion x, y, z, w; return whether its norm is an ordinary number.

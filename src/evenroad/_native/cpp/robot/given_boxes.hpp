@@ -1,4 +1,4 @@
-// Boxes given as arrays, as a scene takes them.
+// Boxes from arrays, in the form of a scene.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// What a grid of distances tells of sixteen places.
+// Lookups of sixteen points in a grid of distances.
 #pragma once
 
 #include "robot/hull_contact.hpp"
@@ -19,10 +19,10 @@ struct NearAndSure {
   Mask near = 0, sure = 0;
 };
 
-/// Return the masks of lanes in which a surface may be within `near` of a place, and is within `touching` for sure.
+/// Return the masks of lanes in which a surface may be within `near` of a point, and certainly is within `touching`.
 ///
-/// Outside of the grid the nearest point inside is looked up: what lies beyond that is farther by at least the third
-/// side of a triangle with an obtuse angle.
+/// For a point outside of the grid, the nearest point inside is looked up.  The surface is then farther by at least the
+/// third side of a triangle with an obtuse angle.
 EVENROAD_INLINE NearAndSure query(const DistanceGrid& grid, Vec3x16 point, float near, float touching) {
   const Floats16 zero{};
   const Vec3x16 from = point - spread(grid.low);
@@ -31,7 +31,7 @@ EVENROAD_INLINE NearAndSure query(const DistanceGrid& grid, Vec3x16 point, float
   const Vec3x16 beyond = from - inside;
   const Floats16 away = bytes_of_cells(grid, inside * spread(grid.one_by_cell)) * grid.step;
   const Floats16 outside = dot(beyond, beyond);
-  // Of the largest byte only a lower bound is known.
+  // The largest byte is only a lower bound.
   Mask sure = below_zero(max(away + grid.excess - touching, away - grid.step * 254.5F));
   sure &= below_zero(outside - 1e-30F);
   return {below_zero(fma(away, away, outside) - near * near), sure};

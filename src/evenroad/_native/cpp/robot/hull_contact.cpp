@@ -1,6 +1,6 @@
 // Boxes and planes in single precision rule out nearly all pairs of hulls, for all lanes at once and by more than
-// rounding can be; of what is left `leaves_near` decides, lane by lane in double precision.  Where few lanes are left
-// of hulls of many corners, it is searched at once.
+// rounding errors.  `leaves_near` decides the others, lane by lane in double precision.  Hulls with many vertices and
+// few open lanes go straight to `leaves_near`.
 #include "robot/hull_contact.hpp"
 
 #include <bit>
@@ -13,7 +13,7 @@ namespace {
 
 using Node = HullNode<float>;
 
-/// Return the second frame as the first sees it.
+/// Return the pose of the second frame in the first.
 PlacedFrame relative_pose(const PlacedFrame& a, const PlacedFrame& b) {
   return {
       {b.turned_back({a.rows[0].x, a.rows[1].x, a.rows[2].x}), b.turned_back({a.rows[0].y, a.rows[1].y, a.rows[2].y}),
@@ -40,8 +40,8 @@ RelativePose relative_pose(const PlacedFrame& a, const PlacedFrame& b, int lane)
   return pose;
 }
 
-/// The way from the middle of the second node's box to that of the first, as the first and as the second body sees it,
-/// and the half extents of both boxes together along the axes of the first and of the second.
+/// The vector from the middle of the second node's box to that of the first, in the frames of both bodies, and the sums
+/// of both half extents along the axes of the first and of the second.
 struct TwoBoxes {
   Vec3x16 between, turned, sizes, other_sizes;
 };
@@ -61,7 +61,7 @@ Mask boxes_near(const PlacedFrame& pose, const Node& a, const Node& b, Floats16 
   return below_zero(max(largest(gap), largest(other)) - near);
 }
 
-/// Return the mask of those queried lanes in which none of some planes separates two leaves.
+/// Return the mask of queried lanes in which none of some planes separates two leaves.
 Mask not_separated(const PlacedFrame& pose, const HullTree<float>& tree, const Node& a, const HullTree<float>& other,
                    const Node& b, Floats16 near, Mask asked) {
   const TwoBoxes boxes = boxes_of(pose, a, b);
@@ -79,14 +79,14 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
                    KeptOfPairs* kept) {
   const HullTree<float>&tree = first.tree, &other = second.tree;
   const PlacedFrame pose = relative_pose(first.frame, second.frame);
-  // How near is wrong by no more than single precision loses of the lengths that it comes of.
+  // The error of `near` is at most the rounding of the lengths that it is computed from.
   const Floats16 near = spread(margin) + lost(first, second);
   struct Waiting {
     int a, b;
     Mask lanes;
   } waiting[DEEPEST];
   waiting[0] = {first.root, second.root, asked};
-  // Of lanes that double precision decides, made when it does.
+  // Poses of lanes that double precision decides, made on demand.
   RelativePose poses[LANES];
   Mask placed = 0;
   const auto leaves_meet = [&](int a, int b, int lane, PlaneNormal& plane) {
@@ -99,7 +99,7 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
       const double* at = plane.at;
       kept->of(a, b).normal = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
     } else if (tree.nodes[a].is_leaf()) {
-      // Of what is around a body no point need be of the body.
+      // A point of a hull around a body need not be a point of the body.
       Kept& of_all = kept->of(first.root, second.root);
       of_all.point = point, of_all.has_point = true;
     }
@@ -113,10 +113,10 @@ Mask hulls_meeting(const PlacedHulls& first, const PlacedHulls& second, float ma
     const Node &p = tree.nodes[a], &q = other.nodes[b];
     left &= boxes_near(pose, p, q, near);
     if (left == 0) continue;
-    // Of the lane before: often it separates the next one, too.
+    // The plane of the lane before often separates the next one, too.
     PlaneNormal plane;
     if (p.points.size() > 0 && !p.is_leaf() && q.points.size() > 0) {
-      // Separated from what is around all of the first.
+      // Separated from the hull around all of the first.
       for (Mask all = left; all != 0; all &= all - 1) {
         const int lane = std::countr_zero(all);
         if (!leaves_meet(a, b, lane, plane)) left &= ~(1U << lane);

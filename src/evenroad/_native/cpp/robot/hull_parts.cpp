@@ -1,4 +1,4 @@
-// Trees over the convex parts of true shapes: how they are made, and whether closed surfaces go around a place.
+// Trees over the convex parts of true shapes: their construction, and a test whether closed surfaces go around a point.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double ROUNDING = 1e-12;  // boxes are larger by that [m]
-/// So small a volume, of the line's unit and two corners, leaves open on which side of a triangle's side it passes
+constexpr double ROUNDING = 1e-12;  // boxes are larger by this [m]
+/// Volume of the line's unit vector and two corners below which the line may pass a triangle's side on either side
 /// [m^2].
 constexpr double ROUNDED = 1e-14;
 
@@ -131,8 +131,8 @@ struct Builder {
   }
 };
 
-/// Return how a line along `direction` from a place crosses a triangle ahead of the place: 0, or 1 along the triangle's
-/// normal and -1 against it; nothing where that is uncertain.
+/// Return how a line along `direction` from a point crosses a triangle ahead of it: 0 if it does not, 1 along the
+/// triangle's normal, -1 against it; nothing if that is uncertain.
 std::optional<int> crossing(const HullPoint<float>* corners, const Vector& point, const Vector& direction) {
   Vector p[3];
   double sides[3];
@@ -142,12 +142,12 @@ std::optional<int> crossing(const HullPoint<float>* corners, const Vector& point
   const double least = std::min({sides[0], sides[1], sides[2]}), most = std::max({sides[0], sides[1], sides[2]});
   if (least < -ROUNDED && most > ROUNDED) return 0;
   if (least < ROUNDED && most > -ROUNDED) return std::nullopt;
-  // The triangle's volume with the place tells on which side of it that is.
+  // The sign of the triangle's volume with the point is the side of the point.
   const double ahead = volume(p[0], p[1], p[2]);
   return (ahead > 0) == (least > 0) ? (least > 0 ? 1 : -1) : 0;
 }
 
-/// Return how often surfaces below a root wind around a point, seen along a direction, or nothing where that is
+/// Return the winding number of surfaces below a root around a point, along a direction, or nothing if that is
 /// uncertain.
 std::optional<int> windings(const HullTree<float>& tree, int root, const Vector& point, const Vector& direction) {
   int waiting[DEEPEST], count = 1, times = 0;
@@ -161,7 +161,7 @@ std::optional<int> windings(const HullTree<float>& tree, int root, const Vector&
       times += *crossed;
       continue;
     }
-    // Whether the half line ahead meets the box.
+    // Whether the half line ahead hits the box.
     double enter = 0, leave = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; k++) {
       const double gap = node.centre[k] - point[k], half = node.half[k] + ROUNDED;
@@ -255,7 +255,7 @@ std::vector<Vec3> points_of_parts(const HullTree<float>& tree, int root) {
 }
 
 bool encloses(const HullTree<float>& tree, int root, const Vector& point) {
-  // Lines along no usual axis; where one passes through a side of a triangle, the next is taken.
+  // The lines are along no usual axis.  If one passes through a side of a triangle, the next is tried.
   constexpr Vector DIRECTIONS[] = {{0.3826, 0.5113, 0.7695}, {-0.6711, 0.4127, 0.6159}, {0.5217, -0.7723, 0.3624}};
   for (const Vector& direction : DIRECTIONS) {
     if (const auto times = windings(tree, root, point, direction)) return *times != 0;

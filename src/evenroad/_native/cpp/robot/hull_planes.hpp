@@ -5,19 +5,20 @@
 
 namespace evenroad::robot {
 
-constexpr int PLANES = 3;  // tried for each two hulls before they are left to double precision
-/// Planes of all lanes pay where the first times the open lanes is at least the second plus the corners of both hulls.
+constexpr int PLANES = 3;  // planes to try for two hulls before double precision decides
+/// Planes in all lanes pay if the first number times the open lanes is at least the second plus the corners of both
+/// hulls.
 constexpr int CORNERS_OF_A_LANE = 12, CORNERS_OF_PLANES = 32;
-/// Half extents of boxes [m], and squares of sines in triangles, are taken for at least that: so all stays finite.
+/// Lower bound of half extents of boxes [m], and of squared sines in triangles, so that all results stay finite.
 constexpr float THIN = 1e-4F, FLAT = 1e-7F;
 
-/// How far something reaches along unit directions, and its farthest points.
+/// The extents of a body along unit directions, and its farthest points.
 struct Farthest16 {
   Floats16 along;
   Vec3x16 corner;
 };
 
-/// Return how far a leaf's hull and disc reach along unit directions, and their farthest points.
+/// Return the extents of a leaf's hull and disc along unit directions, and their farthest points.
 EVENROAD_INLINE Farthest16 farthest(Vec3x16 direction, const HullTree<float>& tree, const HullNode<float>& leaf) {
   Farthest16 most{spread(-FAR), {Floats16{}, Floats16{}, Floats16{}}};
   for (int i = leaf.points.first; i < leaf.points.end; i++) {
@@ -48,7 +49,8 @@ EVENROAD_INLINE Vec3x16 nearest_of_two(Vec3x16 a, Vec3x16 b) {
   return minus(a, edge, clamp(share, Floats16{}, spread(1)));
 }
 
-/// Return what of triangles is nearest to the origin, but for what is between the first two corners.
+/// Return the points of triangles that are nearest to the origin, not considering the side between the first two
+/// corners.
 EVENROAD_INLINE Vec3x16 nearest_of_three(Vec3x16 a, Vec3x16 b, Vec3x16 c) {
   const Vec3x16 first = nearest_of_two(a, c), second = nearest_of_two(b, c);
   const Vec3x16 nearest = where_less(dot(second, second), dot(first, first), second, first);
@@ -61,16 +63,16 @@ EVENROAD_INLINE Vec3x16 nearest_of_three(Vec3x16 a, Vec3x16 b, Vec3x16 c) {
   return where_less(Floats16{}, inside, a + plus(f * t, e, s), nearest);
 }
 
-/// Return the mask of those queried lanes in which none of some planes separates two hulls by more than `near`.
+/// Return the mask of queried lanes in which none of some planes separates two hulls by more than `near`.
 ///
-/// The way between the middles of boxes around them is that from the second to the first, `sizes` the half extents of
-/// both together.  `first` returns what of the first is farthest along directions, `second` the same of the second,
-/// seen from where `shift` leads to.
+/// `shift` leads from the middle of the second hull's box to that of the first, and `sizes` are the sums of both half
+/// extents.  `first` returns the farthest points of the first hull along directions, and `second` those of the second,
+/// relative to `shift`.
 template <class First, class Second>
 EVENROAD_INLINE Mask unseparated(Vec3x16 between, Vec3x16 sizes, Vec3x16 shift, First&& first, Second&& second,
                                  Floats16 near, Mask asked) {
   const Floats16 near_squared = near * near;
-  // First across where the boxes are thin; no step leaves the range of single precision.
+  // The first plane is across the boxes' thin side; no step leaves the range of single precision.
   const Vec3x16 thick = {max(sizes.x, spread(THIN)), max(sizes.y, spread(THIN)), max(sizes.z, spread(THIN))};
   Vec3x16 v = {between.x / thick.x, between.y / thick.y, between.z / thick.z};
   v = v / max(max(abs(v.x), abs(v.y)), max(abs(v.z), spread(LEAST_SQUARE)));
@@ -82,7 +84,8 @@ EVENROAD_INLINE Mask unseparated(Vec3x16 between, Vec3x16 sizes, Vec3x16 shift, 
     const Farthest16 back = first(-along), on = second(along);
     asked &= ~below_zero(near + (back.along + on.along + dot(along, shift)));
     if (asked == 0) break;
-    // On from the way between these corners; then from what of the last two and the way so far is nearest to 0.
+    // The next direction is the vector between these corners, then the point nearest to 0 of the last two and the
+    // direction so far.
     const Vec3x16 corner = back.corner - (shift + on.corner);
     direction = step == 0 ? corner : nearest_of_three(direction, last, corner);
     last = corner;

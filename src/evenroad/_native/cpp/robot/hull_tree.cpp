@@ -1,8 +1,8 @@
 // Contact of two bodies of convex hulls in double precision: a tree over the hulls of each, and GJK below.
 //
-// Separated is only what a plane separates: its gap is computed from all corners, so no rounding, and no search
-// that ends too soon, calls bodies free that touch.  The search is that of E. Gilbert, D. Johnson and S. Keerthi
-// (1988).
+// Bodies count as separated only if a plane separates them.  Its gap is computed from all corners, so neither rounding
+// nor an early end of the search calls touching bodies free.  The search is that of E. Gilbert, D. Johnson and S.
+// Keerthi (1988).
 #include "robot/hull_tree.hpp"
 
 #include <algorithm>
@@ -19,12 +19,12 @@ namespace evenroad::robot {
 namespace {
 
 constexpr int MOST_STEPS = 40;
-constexpr double SAME = 1e-9;     // lengths that differ by less are one [m]
-constexpr double SURER = 2e-6;    // where a search begins with what is kept it decides by more, in parts of a margin
-constexpr double THICKER = 1e-4;  // half extents of boxes are taken for so much more [m]
-constexpr int FEW_POINTS = 4;     // so few are looked at one by one, in double precision
+constexpr double SAME = 1e-9;     // lengths that differ by less are equal [m]
+constexpr double SURER = 2e-6;    // a search that begins with a cached plane must decide by more, in parts of a margin
+constexpr double THICKER = 1e-4;  // half extents of boxes are enlarged by this [m]
+constexpr int FEW_POINTS = 4;     // so few points are tested one by one, in double precision
 
-/// Return the way from the middle of the second node to that of the first, in the first's frame.
+/// Return the vector from the middle of the second node to that of the first, in the first's frame.
 template <class T>
 Vector between_middles(const HullNode<T>& a, const HullNode<T>& b, const RelativePose& pose) {
   Vector direction;
@@ -35,7 +35,7 @@ Vector between_middles(const HullNode<T>& a, const HullNode<T>& b, const Relativ
   return direction;
 }
 
-/// How far a leaf's hull and disc reach along a direction, and the point that is farthest.
+/// The extent of a leaf's hull and disc along a direction, and the farthest point.
 struct Farthest {
   double along;
   Vector point;
@@ -157,7 +157,8 @@ struct Search {
     }
   }
 
-  /// Take the way from what of the corners is nearest; return whether they are around where the two would touch.
+  /// Set the direction from the nearest point of the corners; return whether they surround the point where the two
+  /// would touch.
   bool turn() {
     nearest(simplex, direction);
     length = std::sqrt(squared_length(direction));
@@ -172,7 +173,7 @@ struct Search {
     }
   }
 
-  /// What is farthest along the way, and by how much a plane across it separates the two.
+  /// The farthest points along the direction, and the gap of a plane perpendicular to it.
   struct Across {
     Farthest p, q;
     double gap;

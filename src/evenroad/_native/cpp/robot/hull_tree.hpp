@@ -11,7 +11,7 @@
 
 namespace evenroad::robot {
 
-/// From a first to one before an end.
+/// A range from a first number to one before an end.
 struct Range {
   int first = 0, end = 0;
   int size() const { return end - first; }
@@ -24,15 +24,15 @@ struct HullPoint {
 
 template <class T>
 struct HullNode {
-  int children[2] = {-1, -1};  // of a leaf -1 twice
-  Range points;                // of a leaf's hull; of one around all that is below, if there is one
-  Range blocks;                // of sixteen of these points, if they are many
+  int children[2] = {-1, -1};  // -1 twice for a leaf
+  Range points;                // of a leaf's hull, or of a hull around everything below, if there is one
+  Range blocks;                // blocks of sixteen of these points, if there are many
   T centre[3] = {0, 0, 0}, half[3] = {0, 0, 0};
   T radius = 0;  // of a ball about the same centre
   T width = 0;   // by how much a leaf's hull is widened
-  // A leaf's hull is widened by a disc of this radius across an axis, too: so a segment is a cylinder.
+  // A leaf's hull is also widened by a disc of this radius, perpendicular to an axis: a segment becomes a cylinder.
   T disc = 0, axis[3] = {0, 0, 0};
-  // It is widened by a box along the axes, too: an obstacle is a point that is widened.
+  // It is also widened by a box along the axes: an obstacle is a widened point.
   T extents[3] = {0, 0, 0};
   bool encloses =
       false;  // whether a leaf is a triangle of a closed surface, which has its inside to the left of its turn
@@ -50,7 +50,7 @@ struct HullTree {
   void take_points(HullNode<T>& leaf, Range of);
 };
 
-/// Convex parts as Python names them: a part is what is round about the hull of its points, by a ball and by a disc.
+/// Convex parts with the names of Python.  A part is the hull of its points, widened by a ball and by a disc.
 struct GivenParts {
   std::span<const std::int64_t> first_point;  // of each part, then the number of points
   std::span<const double> points;             // (points, 3)
@@ -68,7 +68,7 @@ struct GivenHulls {
 /// Pairs of nodes that may wait: at most the depths of both trees together.
 constexpr int DEEPEST = 96;
 
-/// Add a tree over some parts, and return its root; std::invalid_argument if sizes do not fit, or there are none.
+/// Add a tree over parts, and return its root; std::invalid_argument if sizes do not fit, or there are no parts.
 template <class T>
 int add_parts(HullTree<T>& tree, const GivenParts& given, Range parts);
 
@@ -105,10 +105,10 @@ struct PlaneNormal {
   double at[3] = {0, 0, 0};
 };
 
-/// Return whether two leaves, each of a tree, come within a margin; only a plane separates them.  The search
-/// begins with a plane, if one is given, and writes the one that separates them, or else a point of the first that is
-/// about nearest to the second.  It goes on from where another one of these leaves ended, if that is given, and writes
-/// where it ends; what that decides by less than rounding is sought anew.
+/// Return whether two leaves, each of a tree, come within a margin; only a plane separates them.  The search begins
+/// with a plane, if one is given.  It writes the plane that separates the leaves, or else a point of the first that is
+/// nearly nearest to the second.  It continues from the end of an earlier search of these leaves, if that is given, and
+/// writes its own end.  If that decides by less than rounding errors, the search starts from the beginning.
 template <class T>
 bool leaves_near(const HullTree<T>& tree, int first, const HullTree<T>& other, int second, const RelativePose& pose,
                  double margin, PlaneNormal& plane, Vec3& point, Ended* ended = nullptr);

@@ -12,8 +12,8 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double EXACT = 1e-10;  // an error is none that is no larger [m, rad]
-constexpr double LONGEST = 0.8;  // no joint moves by more in a step [rad or m]
+constexpr double EXACT = 1e-10;  // a smaller error counts as 0 [m, rad]
+constexpr double LONGEST = 0.8;  // largest movement of a joint in a step [rad or m]
 constexpr int LOOK = 8;          // steps after which the error must have halved
 constexpr double DAMPING = 0.03;
 constexpr int SOLVED_A_LOOK = 4;  // configurations between two looks at the clock
@@ -42,7 +42,7 @@ Vector turn_of_axis(const Pose& tip, const PoseTask& task) {
 
 /// Return the turn, axis times angle, that takes the tip's rotation to the wanted one.
 Vector turn_of_all(const Pose& tip, const PoseTask& task) {
-  // Of the goal times the tip's inverse: twice the axis times the sine, and one plus twice the cosine.
+  // From the goal times the tip's inverse: twice the axis times the sine, and one plus twice the cosine.
   const auto &goal = task.pose.rotation, &own = tip.rotation;
   Vector twice{};
   double trace = 0.0;
@@ -71,7 +71,7 @@ Twist error_of(const Pose& tip, const PoseTask& task) {
   return error;
 }
 
-/// Leave of an error what its tolerance does not cover, aiming a little inside; return its square, 0 if covered.
+/// Reduce an error by its tolerance, slightly less than allowed; return the square of the rest, 0 if covered.
 double uncovered(Twist& error, const PoseTask& task) {
   const double tolerances[] = {task.position_tolerance, task.angle_tolerance};
   double total = 0.0;
@@ -97,7 +97,7 @@ class Solver {
         used_(chain.dim),
         step_(chain.dim) {}
 
-  /// Move a configuration until its tip is where it is wanted; return what is missing, squared.
+  /// Move a configuration until its tip reaches the wanted pose; return the squared error.
   double solve(std::span<double> q, const PoseTask& task, int steps) {
     double before = INF;
     for (int count = 0;; count++) {
@@ -121,7 +121,7 @@ class Solver {
   }
 
  private:
-  /// Write how the tip moves and turns with each coordinate, as far as the task says what it should.
+  /// Write the Jacobian of the tip, for the constrained parts of the task.
   void write_jacobian(const Pose& tip, const PoseTask& task) {
     std::fill(jacobian_.begin(), jacobian_.end(), Twist{});
     for (std::size_t i = 0; i < axes_.size(); i++) {
@@ -133,7 +133,7 @@ class Solver {
         for (int k = 0; k < 3; k++) column[k] += moves[k];
       }
       if (joint.slides || task.turn == Turn::NOT) continue;
-      // Where one axis alone is to point, a turn about it changes nothing.
+      // If only one axis has a direction, a turn about it changes nothing.
       const double along = task.turn == Turn::BY_AXIS ? dot(axis, task.direction) : 0.0;
       for (int k = 0; k < 3; k++) column[3 + k] += axis[k] - along * task.direction[k];
     }

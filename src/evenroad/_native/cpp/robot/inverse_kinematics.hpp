@@ -1,7 +1,7 @@
 // Configurations that bring a tip to a pose, by damped least squares (Wampler 1986; Nakamura and Hanafusa 1986).
 //
 // A step is J' (J J' + damping)^-1 error.  The damping falls with the error, so that steps near the goal are Newton's.
-// A coordinate at its limit that would leave it is left out, and the step is computed anew.
+// A coordinate that would exceed its limit is fixed, and the step is computed again.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@
 
 namespace evenroad::robot {
 
-/// What counts of a rotation: nothing, where one axis points, or all.
+/// The constrained part of a rotation: nothing, the direction of one axis, or everything.
 enum class Turn : std::uint8_t { NOT, BY_AXIS, ALL };
 
-/// Where a tip is wanted, in the root's frame.
+/// The wanted pose of a tip, in the root's frame.
 struct PoseTask {
   Pose pose;
   Vector axis, direction;  // of the tip, and where it is to point: for Turn::BY_AXIS
@@ -30,15 +30,15 @@ struct Limits {
   std::span<const double> low, high;
 };
 
-/// Move configurations, (n, dim), one after the other, each by at most `steps` steps, until `enough` of them reach the
-/// task; return what each lacks, squared: 0 where it reaches it, infinity where its turn did not come.
+/// Move configurations, (n, dim), in sequence, each by at most `steps` steps, until `enough` of them reach the task.
+/// Return the squared error of each: 0 if it reaches the task, infinity if it was not tried.
 std::vector<double> reach(const Chain& chain, const PoseTask& task, const Limits& limits, int steps, std::size_t enough,
                           Matrix<double> q);
 
 /// Move the tip from a configuration, (dim,), through poses, (n, 12); return configurations, (m, dim).
 ///
-/// Each begins where the one before has ended, and a share nearer to `towards`, (dim,) or empty: of an arm with spare
-/// joints the last one is that.  The first that is not reached, or only by a joint's step over `longest`, is the end.
+/// Each begins at the end of the one before, moved by a share towards `towards`, (dim,) or empty; an arm with redundant
+/// joints thus ends there.  The first pose that is not reached, or only by a joint's step over `longest`, is the end.
 std::vector<double> follow(const Chain& chain, PoseTask task, std::span<const double> from,
                            std::span<const double> towards, Matrix<const double> poses, const Limits& limits, int steps,
                            double longest);

@@ -1,4 +1,4 @@
-// The joints of an arm: their ranges, which of them wrap, and the short way from one configuration to another.
+// The joints of an arm: their ranges, which of them wrap, and the shortest motion between two configurations.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ using ConstConfiguration = std::span<const double>;
 
 namespace robot {
 
-/// By how much a joint may exceed its limits [rad or m]; as `evenroad.space.joints.SLACK`.
+/// Largest excess of a joint over its limits [rad or m]; as `evenroad.space.joints.SLACK`.
 constexpr double JOINT_SLACK = 1e-5;
 
-/// Ranges of the joints; the period is infinite where a joint does not wrap.
+/// Ranges of the joints; the period of a joint that does not wrap is infinite.
 struct Joints {
   std::vector<double> low, high, period;
 
@@ -54,7 +54,7 @@ inline bool enter(ConstConfiguration q, const Joints& joints, Configuration into
 /// Bring the joints that wrap into their ranges; return whether the others are within theirs, up to the slack.
 inline bool enter(Configuration q, const Joints& joints) { return enter(q, joints, q); }
 
-/// Bring all joints into their ranges: those that wrap are wrapped, the others cut.
+/// Bring all joints into their ranges: those that wrap are wrapped, the others clipped.
 inline void bring_inside(Configuration q, const Joints& joints) {
   enter(q, joints);
   for (std::size_t k = 0; k < q.size(); k++) {
@@ -62,13 +62,13 @@ inline void bring_inside(Configuration q, const Joints& joints) {
   }
 }
 
-/// Write the short way from `a` to `b` and return its length.
+/// Write the shortest direction from `a` to `b` and return its length.
 inline double write_direction(ConstConfiguration a, ConstConfiguration b, const Joints& joints,
                               Configuration direction) {
   double squared = 0.0;
   for (std::size_t k = 0; k < a.size(); k++) {
     double gap = b[k] - a[k];
-    // Half a turn is rounded to no turn, so that opposite values keep the sign.
+    // Half a turn is rounded to zero turns, so that opposite values keep the sign.
     if (joints.wraps(k)) gap -= joints.period[k] * std::rint(gap / joints.period[k]);
     direction[k] = gap;
     squared += gap * gap;

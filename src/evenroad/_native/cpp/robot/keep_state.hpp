@@ -1,4 +1,4 @@
-// One configuration under constraints: where the tips are, how far each constraint is off, and how that changes.
+// One configuration under constraints: the poses of the tips, the residuals, and their derivatives.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ class KeepState {
   /// Place the tips at a configuration, (dim,), which is kept alive.
   void move_to(std::span<const double> q);
 
-  /// Say how the tips move with each joint; after `move_to`.
+  /// Compute the Jacobians of the tips; after `move_to`.
   void derive();
 
   void write_residual(const Keep& keep, std::span<double> to) const;
@@ -25,7 +25,7 @@ class KeepState {
   void write_column(const Keep& keep, std::size_t joint, std::span<double> to) const;
 
  private:
-  /// How a tip moves and turns with a joint.
+  /// The column of a joint in a tip's Jacobian.
   std::pair<Vector, Vector> twist(std::size_t tip, std::size_t joint) const;
 
   const Keeps& keeps_;

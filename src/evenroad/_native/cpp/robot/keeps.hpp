@@ -1,7 +1,7 @@
 // Constraints that configurations keep, and steps onto them (damped Gauss-Newton, Nakamura and Hanafusa 1986).
 //
-// A constraint has a residual, a vector whose length is how far it is off, and which may be so long.  The residuals are
-// those that evenroad.constraints defines in Python, kind by kind.
+// A constraint has a residual, a vector whose length is the deviation, with a largest allowed length.
+// evenroad.constraints defines the residuals in Python, kind by kind.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace evenroad::robot {
 
-/// What a residual is, and which numbers it is made of.
+/// The kind of a residual, and its parameters.
 enum class KeepKind : std::uint8_t {
-  LINEAR,    // rows of 12 coefficients of the tip's pose, and what is taken off
-  BOX,       // the origin's way out of a box: its low and high corner
+  LINEAR,    // rows of 12 coefficients of the tip's pose, and a constant to subtract
+  BOX,       // the origin's vector from a box: its low and high corner
   CIRCLE,    // centre, directions along the hinge, outward and of the turn, radius; the pose on the circle, (12,)
   TOGETHER,  // pose of the second tip in the frame of the first, (12,)
   JOINTS     // lows and highs of all joints
@@ -33,7 +33,8 @@ struct Keep {
   std::span<double> of(std::span<double> all) const { return all.subspan(row, rows); }
 };
 
-/// How a projection ends: shares of limits that it aims at, and that are enough; steps, and the longest of a joint.
+/// The end of a projection: shares of limits that it aims at, and that suffice; the number of steps, and a joint's
+/// longest.
 struct Projecting {
   double aim, enough;
   int steps;
@@ -58,7 +59,7 @@ struct Keeps {
   /// Write the lengths of the residuals as shares of their limits: (n, constraints).
   void write_shares(Matrix<const double> q, Matrix<double> shares) const;
 
-  /// Move configurations until all residuals are within a share of their limits; return which got there.
+  /// Move configurations until all residuals are within a share of their limits; return which succeed.
   std::vector<std::uint8_t> project(Matrix<double> q, const Projecting& how) const;
 };
 

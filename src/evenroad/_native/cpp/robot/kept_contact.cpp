@@ -1,4 +1,4 @@
-// What decided about two bodies before: a plane for sixteen lanes costs less than a search in one.
+// The cached decisions about two bodies.  A plane for sixteen lanes costs less than a search in one.
 #include <bit>
 #include <cmath>
 

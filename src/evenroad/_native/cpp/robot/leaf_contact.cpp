@@ -1,5 +1,5 @@
-// Boxes and planes in single precision rule out nearly all triangles, sixteen at once and by more than rounding can be;
-// of what is left `leaves_near` decides, triangle by triangle in double precision.
+// Boxes and planes in single precision rule out nearly all triangles, sixteen at once and by more than rounding errors.
+// `leaves_near` decides the others, triangle by triangle in double precision.
 #include "robot/leaf_contact.hpp"
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace {
 
 EVENROAD_INLINE Floats16 sum(Vec3x16 v) { return v.x + v.y + v.z; }
 
-/// Triangles as a body sees them: their corners, of the second and third the ways to them, the boxes around them, and
-/// from where to where they go along their normals.
+/// Triangles in a body's frame: the first corner, the vectors to the other two, the boxes around them, and their
+/// extents along their normals.
 struct SeenTriangles {
   Vec3x16 corner, first, second, centre, half, normal;
   Floats16 low, high;
-  Floats16 near;  // what is nearer touches, or single precision cannot tell
+  Floats16 near;  // nearer triangles touch, or single precision cannot decide
 
   /// Return which ones come near the box around a hull.
   EVENROAD_INLINE Mask beside(const HullNode<float>& hull) const {
@@ -63,7 +63,7 @@ SeenTriangles seen_by(const PlacedFrame& body, const TriangleLeaf& leaf, float r
   const Vec3x16 low = {min(min(a.x, b.x), none), min(min(a.y, b.y), none), min(min(a.z, b.z), none)};
   const Vec3x16 high = {max(max(a.x, b.x), none), max(max(a.y, b.y), none), max(max(a.z, b.z), none)};
   all.centre = plus(all.corner, low + high, spread(0.5F)), all.half = (high - low) * spread(0.5F);
-  // Where a normal is not known well, that holds for any direction.
+  // This holds for any direction, also if a normal is inaccurate.
   const Floats16 along = dot(all.normal, a), other = dot(all.normal, b), at = dot(all.normal, all.corner);
   all.low = at + min(min(along, other), none), all.high = at + max(max(along, other), none);
   all.near = near + (sum(abs(from)) + max(sum(abs(leaf.first)), sum(abs(leaf.second))) + reach) * SLACK;

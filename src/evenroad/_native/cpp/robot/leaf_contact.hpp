@@ -6,13 +6,13 @@
 
 namespace evenroad::robot {
 
-/// Hulls of a body at one configuration, and what of a surface comes near them: leaf after leaf.
+/// Hulls of a body at one configuration against a surface, leaf by leaf.
 ///
-/// A triangle is made of what its leaf holds: its corner, and the ways to the others.  Single precision rounds each of
-/// them, and their sums by less than surfaces are wider for that reason.
+/// A leaf stores a triangle as one corner and the vectors to the others.  Single precision rounds these and their sums;
+/// surfaces are widened by more than that.
 class ShapeAt {
  public:
-  /// Triangles, wide as they are said to be, touch from nearer than the margin on.
+  /// Triangles with their width touch if they are nearer than the margin.
   ShapeAt(const HullTree<float>& tree, int root, const PlacedFrame& frames, int lane, float wide, float margin);
 
   /// Return which boxes of a node come near the box around the body.

@@ -11,11 +11,11 @@ namespace evenroad::robot {
 namespace {
 
 constexpr double FULL_TURN = 2.0 * std::numbers::pi;
-constexpr double AT_A_LIMIT = 1e-9;  // what is beyond a limit by no more is moved to it [rad or m]
+constexpr double AT_A_LIMIT = 1e-9;  // values beyond a limit by at most this are moved to it [rad or m]
 
 double square(double x) { return x * x; }
 
-/// Return a number that is the smaller, the nearer a pose of the tip, (12,), is to a task.
+/// Return a measure of the distance of a pose of the tip, (12,), from a task.
 double away_from(const PoseTask& task, std::span<const double> tip) {
   double away = 0.0;
   if (task.placed) {
@@ -52,7 +52,8 @@ void choose(const Beginnings& from, const PoseTask& task, std::vector<double>& a
   rows.resize(kept);
 }
 
-/// Move a configuration to the turn nearest to the middle of the bounds, and to a bound that it is beyond by rounding.
+/// Move a configuration to the turn nearest to the middle of the bounds, and back to a bound that it exceeds by
+/// rounding.
 void wrap(std::span<double> q, const Postures& postures) {
   for (std::size_t k = 0; k < q.size(); k++) {
     const double low = postures.bounds(0, k), high = postures.bounds(1, k);

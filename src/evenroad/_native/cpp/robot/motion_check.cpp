@@ -7,7 +7,7 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Fewer motions than these are not worth a batch for all.
+/// Least number of motions for which a common batch pays.
 constexpr std::size_t LEAST_AT_ONCE = 4;
 
 /// Return whether the states of the workspace's motion from number `first` to `last` are free, or sixteen of them.
@@ -30,7 +30,7 @@ bool are_free(Workspace& workspace, int first, int last, bool sixteen_do) {
   motion.share = load<Doubles16>(numbers) / segments;
   motion.write_states(workspace.states);
   if (last == motion.segments) {
-    // Exactly the end, so that a motion is free only where its end is.
+    // The exact endpoint, so that a motion is free only if its endpoint is.
     workspace.set(LANES - 1, motion.end);
   }
   workspace.counts.configurations += std::min(count, LANES);
@@ -55,7 +55,7 @@ bool are_free(Workspace& workspace, int first, int last, bool sixteen_do) {
   return true;
 }
 
-/// Make a motion the workspace's.
+/// Store a motion in the workspace.
 void take(Workspace& workspace, std::span<const double> a, std::span<const double> b) {
   workspace.motion.span(a, b, workspace.checker.robot().joints, workspace.checker.resolution());
   workspace.counts.motions++;
@@ -82,7 +82,7 @@ void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const d
     std::fill(free.begin(), free.end(), false);
     return;
   }
-  // A motion that needs more batches is not proved: some ten milliseconds; usual ones need a few.
+  // A motion that needs more batches, about ten milliseconds, is not proved; usual motions need a few.
   const ProofLimits limits{tolerance, 1 << 11};
   const Borrowed workspace = checker.borrow();
   const Joints& joints = checker.robot().joints;

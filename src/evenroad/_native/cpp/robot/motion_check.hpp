@@ -5,11 +5,11 @@
 
 namespace evenroad::robot {
 
-/// Which ends of a motion are known to be free, and not tested again.
+/// The endpoints of a motion that are known to be free, and not tested again.
 enum class Known : std::uint8_t { NO_ENDPOINT, START, BOTH_ENDPOINTS };
 
-/// Limits of a proof: stretches that move nothing by more than the tolerance are not halved again [m], and after so
-/// many batches of sixteen stretches the answer is no.
+/// Limits of a proof.  Intervals that move no body by more than the tolerance are not halved again [m].  After this
+/// many batches of sixteen intervals the motion counts as not proved.
 struct ProofLimits {
   double tolerance;
   int most_batches;
@@ -17,23 +17,23 @@ struct ProofLimits {
 
 /// Return whether the motion from `a` to `b`, both within bounds, is free at its states.
 ///
-/// These are k / n of the way, n the number of segments of at most the resolution.  The first sixteen are spread over
-/// the motion; the others follow in stretches of sixteen neighbours, halves before quarters before eighths.
+/// The states lie at shares k / n, with n the number of segments of at most the resolution.  The first sixteen are
+/// spread over the motion.  The others follow in groups of sixteen neighbours, halves before quarters before eighths.
 bool motion_free(Workspace& workspace, std::span<const double> a, std::span<const double> b, Known known);
 
-/// Return whether the motion from `a` to `b`, within bounds, is proved free: throughout, not at states alone.
+/// Return whether the motion from `a` to `b`, within bounds, is proved free, not only at states.
 bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits);
 
 /// Return which of the first sixteen motions from rows of `a` to those of `b` are proved free together.
 ///
-/// Bodies are enlarged by what the longest of them moves, so others may be free, too.  None is where one is long.
+/// Bodies are enlarged for the longest of them, so others may be free, too.  If one is long, none is proved.
 Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const double> b, double tolerance);
 
-/// Return whether a motion between free ends is free at sixteen of its states at most, and then proved.
+/// Return whether a motion between free endpoints is free at up to sixteen of its states, and then proved.
 bool is_shortcut(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits);
 
-/// Write which motions, from rows of `a` to those of `b`, are free at both ends and at states between; where the
-/// tolerance is > 0 they must be proved free, too.
+/// Write which motions, from rows of `a` to those of `b`, are free at both endpoints and at states between.  If the
+/// tolerance is > 0, they must also be proved free.
 void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const double> b, double tolerance,
                   std::span<bool> free);
 

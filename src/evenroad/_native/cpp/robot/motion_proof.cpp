@@ -1,31 +1,32 @@
-// Proofs that a motion is free throughout, not at states alone.
+// Proofs that a whole motion is free, not only its states.
 //
-// The method is that of evenroad.collision.certified, for sixteen stretches of a motion at once: every stretch is
-// tested in its middle with bodies enlarged by what half of the stretch can move them, and halved where that fails.  Of
-// many short motions, as of a trajectory, sixteen are tried at once, each as one stretch, and what fails is halved.
+// The method is that of evenroad.collision.certified, for sixteen intervals of a motion at once.  Every interval is
+// tested in its middle, with bodies enlarged by their largest movement in half of it, and halved if the test fails.
+// For short motions, as of a trajectory, sixteen motions are tried at once, each as one interval; those that fail are
+// halved.
 #include "robot/motion_check.hpp"
 
 namespace evenroad::robot {
 
 namespace {
 
-/// A stretch is halved no more often, whatever the tolerance: its half is then less than 1e-13 of the motion.
+/// Largest number of halvings of an interval, for any tolerance: its half is then less than 1e-13 of the motion.
 constexpr int DEEPEST_INTERVAL = 40;
 
-/// Where stretches move something by more than that, capsules alone decide [m]: shapes are rarely free where they are
-/// not, and two halves cost less than to ask these.
+/// Movement in an interval above which capsules alone decide [m].  Shapes are then rarely free if capsules are not, and
+/// two halves cost less than a test of shapes.
 constexpr double COARSE = 0.005;
 
-/// Motions that move nothing by more than twice that are tried sixteen at once [m].
+/// Motions that move no body by more than twice this are tried sixteen at once [m].
 constexpr double SHORT = 0.02;
 
-/// Each of these is halved so often at most, before it is looked at by itself.
+/// Largest number of halvings of each of these, before it is proved separately.
 constexpr int HALVED = 3;
 
-/// What sums of single precision are multiplied by to be no less than the true ones.
+/// Factor that makes sums in single precision no less than the true ones.
 constexpr float UP = 1.0F + 3e-7F;
 
-/// Return a length of single precision that is no less than the sum of the two [m].
+/// Return a length in single precision that is no less than the sum of two [m].
 float wider(float length, double margin) { return (length + static_cast<float>(margin)) * UP; }
 
 double fastest_in(std::span<const double> speeds, Range range) {
@@ -34,14 +35,14 @@ double fastest_in(std::span<const double> speeds, Range range) {
   return most;
 }
 
-/// Write lengths that are larger by what `half` of the motion can move the bodies: all that a test is decided by.
+/// Write all lengths of a test, enlarged by the largest movement of bodies in `half` of the motion.
 void enlarge(Workspace& workspace, double half) {
   const Robot& robot = workspace.checker.robot();
   const Lengths& from = *workspace.lengths;
   Lengths& into = workspace.enlarged;
   const std::vector<double>&speeds = workspace.speeds.capsules, &pair_speeds = workspace.speeds.pairs;
   for (std::size_t i = 0; i < from.capsules.size(); i++) into.capsules[i] = wider(from.capsules[i], half * speeds[i]);
-  // What is around a body moves no farther than the fastest of its capsules.
+  // The ball around a body moves no farther than the fastest of its capsules.
   for (std::size_t b = 0; b < robot.bodies.size(); b++) {
     into.shapes[b] = wider(from.shapes[b], half * workspace.speeds.shapes[b]);
     const double margin = half * fastest_in(speeds, robot.bodies[b].capsules);
@@ -62,7 +63,7 @@ void enlarge(Workspace& workspace, double half) {
   }
 }
 
-/// A piece of one of many motions, and where its middle is, as a share of it.
+/// A piece of one of many motions, and the position of its middle, as a share of it.
 struct Piece {
   std::size_t row;
   double centre;
@@ -79,7 +80,7 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
   double fastest = 0;
   std::vector<Interval>& waiting = workspace.waiting;
   int count = LANES, enlarged_for = -1;
-  // The first stretch is the last to be pushed and the first to be looked at.
+  // The first interval is pushed last, so that it is tested first.
   for (int lane = 0; lane < LANES; lane++) waiting[lane] = {1.0 - (lane + 0.5) / LANES, 0};
   double half = 0;
   for (int batch = 0; batch < limits.most_batches; batch++) {
@@ -95,7 +96,7 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
     if (level != enlarged_for) {
       half = 0.5 / static_cast<double>(std::int64_t{LANES} << level);
       if (batch == 0) {
-        // These stretches are the whole motion.
+        // These intervals are the whole motion.
         for (std::size_t k = 0; k < motion.direction.size(); k++) {
           workspace.speeds.directions[k] = spread(static_cast<float>(motion.direction[k]));
         }
@@ -133,7 +134,7 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
     if (enter(a[row], robot.joints, starts[row]) && enter(b[row], robot.joints, end)) proved |= 1U << row;
     write_direction(starts[row], end, robot.joints, directions[row]);
     for (std::size_t k = 0; k < dim; k++) longest[k] = std::max(longest[k], std::abs(directions(row, k)));
-    // Of long motions nearly always the first is long.
+    // If any motion is long, it is nearly always the first.
     if (row > 0 && row + 1 < count) continue;
     speeds.take_anywhere(robot, longest);
     whole = speeds.fastest();
@@ -147,7 +148,7 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
     for (std::size_t first = 0; first < pieces.size(); first += LANES) {
       const std::size_t some = std::min<std::size_t>(LANES, pieces.size() - first);
       for (std::size_t lane = 0; lane < LANES; lane++) {
-        // Lanes to spare repeat the last piece.
+        // Unused lanes repeat the last piece.
         const auto [row, centre] = pieces[first + std::min(lane, some - 1)];
         for (std::size_t k = 0; k < dim; k++) {
           workspace.states[k][static_cast<int>(lane)] = starts(row, k) + centre * directions(row, k);
@@ -167,7 +168,7 @@ Mask proved_at_once(Workspace& workspace, Matrix<const double> a, Matrix<const d
       const Mask near = blocked_where_placed(workspace, workspace.enlarged, Wanted::ALL);
       for (std::size_t lane = 0; lane < some; lane++) {
         const auto [row, centre] = pieces[first + lane];
-        // Of one that is given up, the other pieces do not matter.
+        // The other pieces of a motion that is given up do not matter.
         if ((near >> lane & 1) == 0 || (proved >> row & 1) == 0) continue;
         if (level == HALVED) proved &= ~(1U << row);
         for (const double side : {-0.5, 0.5}) halves.push_back({row, centre + side * half});

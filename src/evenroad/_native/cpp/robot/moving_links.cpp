@@ -22,13 +22,13 @@ EVENROAD_INLINE Vectors about_z(const States& cosine, const States& sine, const 
   return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z};
 }
 
-/// Return where the origin of a frame is that slides along its z axis.
+/// Return the origin of a frame that slides along its z axis.
 EVENROAD_INLINE Vectors arm_of(const Pose& before, const States& slide) {
   const auto& [rotation, origin] = before;
   return {origin[0] + slide * rotation[2], origin[1] + slide * rotation[5], origin[2] + slide * rotation[8]};
 }
 
-/// Write sines and cosines: of what is left of the nearest quarter turn, by their series, which end below 1e-16.
+/// Write sines and cosines, by the series of the remainder after the nearest quarter turn; the series end below 1e-16.
 void write_sine_cosine(States angle, States& sine, States& cosine) {
   // Added to a number, it leaves the nearest whole one in the last bits.
   constexpr double WHOLE = 6755399441055744.0;

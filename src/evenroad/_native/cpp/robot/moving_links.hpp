@@ -1,7 +1,7 @@
-// How the links of a robot move, and which torques move them: Newton and Euler's equations, eight states at once.
+// The motions of a robot's links and the torques for them, by Newton and Euler's equations, eight states at once.
 //
-// Forces are summed up from the tips to the root (Luh, Walker and Paul 1980).  Each vector is written along the axes of
-// its own frame, so that a step from frame to frame is one turn about z and one that never changes.
+// Forces are summed from the tips to the root (Luh, Walker and Paul 1980).  Each vector is in its own frame.  A step
+// from frame to frame is then a rotation about z and a constant rotation.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace evenroad::robot {
 /// A frame that a joint moves, `before` in its parent's frame, and the mass that is fixed to it.
 struct MovingLink {
   ChainJoint joint;
-  int parent;  // below its own number; -1 is the root, which stands still
+  int parent;  // less than its own number; -1 is the root, which does not move
   double mass;
   Vector centre;                  // of the mass
   std::array<double, 9> inertia;  // about the centre, row by row
@@ -30,7 +30,7 @@ struct MovingLinks {
   std::vector<MovingLink> links;
 };
 
-/// So many states are computed at once.
+/// Number of states that are computed at once.
 constexpr std::size_t STATES = 8;
 using States = Lanes<double, STATES>;
 
@@ -60,17 +60,17 @@ class MovingStates {
   /// Take configurations, (dim,).
   void move_to(std::span<const States> q);
 
-  /// Take velocities, none for links that stand still, and accelerations, (dim,); the root is accelerated by `pulled`.
+  /// Set velocities, none for links at rest, and accelerations, (dim,); the root has the acceleration `pulled`.
   void move(std::span<const States> velocity, std::span<const States> acceleration, const Vector& pulled);
 
-  /// Return how a point of a link is accelerated, along the link's axes.
+  /// Return the acceleration of a point of a link, in the link's frame.
   Vectors acceleration(std::size_t link, const Vector& point) const;
 
   /// Write the torques, (dim,), that this motion needs.
   void write_torques(std::span<States> torques);
 
  private:
-  /// How a frame turns, and is pushed to turn and to move.
+  /// The angular velocity of a frame, and its angular and linear accelerations.
   struct Motion {
     Vectors turn, turned, pushed;
   };
@@ -79,7 +79,7 @@ class MovingStates {
   };
 
   const MovingLinks& links_;
-  /// Of each joint: its angle, or how far it slides.
+  /// The angle or slide of each joint.
   std::vector<States> sines_, cosines_, slides_;
   std::vector<Motion> motions_;
   std::vector<Load> loads_;
@@ -88,7 +88,7 @@ class MovingStates {
 /// Read up to eight rows from `first` on, coordinate by coordinate; the last row is repeated.
 void read_rows(Matrix<const double> rows, std::size_t first, std::span<States> columns);
 
-/// Write the torques of states, (n, dim) each, where the root is accelerated by `pulled`.
+/// Write the torques of states, (n, dim) each; the root has the acceleration `pulled`.
 void write_torques(const MovingLinks& links, Matrix<const double> q, Matrix<const double> velocity,
                    Matrix<const double> acceleration, const Vector& pulled, Matrix<double> torques);
 

@@ -1,5 +1,5 @@
-// Sixteen obstacles at once are tested against the box around all lanes of a body, if it has many capsules, and then
-// of a capsule; those that are near one by one.
+// Sixteen obstacles at once are tested against the box around all lanes of a body, if it has many capsules, and then of
+// a capsule.  Obstacles that are near are tested one by one.
 #include "robot/obstacle_contact.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace evenroad::robot {
 
 namespace {
 
-/// The box around a body or a capsule in all lanes: made once, when the first block of obstacles is looked at.
+/// The box around a body or a capsule in all lanes, made once, when the first block of obstacles is tested.
 template <class Placed>
 EVENROAD_INLINE const Box16& make_around(Placed& placed, float radius) {
   placed.around = around_all(placed.centre, abs(placed.half) + spread(Vec3{radius, radius, radius}));
@@ -32,14 +32,14 @@ struct Boxes {
   EVENROAD_INLINE Boxes(const Placed& placed, float radius)
       : centre(placed.centre), half(abs(placed.half) + spread(Vec3{radius, radius, radius})) {}
 
-  /// Return the mask of lanes in which they meet the box around one obstacle.
+  /// Return the mask of lanes in which they overlap the box around one obstacle.
   EVENROAD_INLINE Mask near(const Block& block, int k) const {
     const Vec3x16 there = spread(Vec3{block.centre.x[k], block.centre.y[k], block.centre.z[k]});
     const Vec3x16 reach = spread(Vec3{block.half.x[k], block.half.y[k], block.half.z[k]});
     return below_zero(largest(abs(centre - there) - half - reach));
   }
 
-  /// Return which of some obstacles of a block they meet in lanes that are not blocked.
+  /// Return which of some obstacles of a block they overlap in lanes that are not blocked.
   EVENROAD_INLINE Mask near(const Block& block, Mask asked, Mask blocked) const {
     Mask met = 0;
     for (; asked != 0; asked &= asked - 1) {
@@ -50,12 +50,13 @@ struct Boxes {
   }
 };
 
-/// So few obstacles are looked at one by one: the box around all lanes of a capsule costs more than it saves.
+/// Number of obstacles up to which they are tested one by one, because the box around all lanes costs more than it
+/// saves.
 constexpr int FEW_OBSTACLES = 5;
 
 constexpr int MOST_OPEN = 64;
 
-/// A body and an obstacle of which true shapes are to decide, in some lanes.
+/// A body and an obstacle whose true shapes decide, in some lanes.
 struct Open {
   int body, obstacle, capsule;
   Mask lanes;
@@ -102,7 +103,7 @@ Mask shape_meeting(const Robot& robot, const PlacedRobot& placed, const Body& bo
   const Mask meeting = hulls_meeting({robot.shapes, body.shape, placed.frames[body.frame]},
                                      {obstacles.hulls, number, there}, near, asked, wanted, kept);
   if (meeting != 0 && wanted == Wanted::FIRST) return meeting;
-  // Only what is smaller than the body can be inside.
+  // Only an obstacle smaller than the body can be inside it.
   const HullNode<float>& root = robot.shapes.nodes[body.shape];
   if (std::max({obstacle.half.x, obstacle.half.y, obstacle.half.z}) > root.radius) return meeting;
   return meeting | shape_enclosing(robot, placed, body, there.origin, asked & ~meeting);
@@ -134,7 +135,7 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
     }
     return touching;
   };
-  // From the outermost bodies inwards: those meet obstacles most often.
+  // From the outermost bodies inwards, because those touch obstacles most often.
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Range capsules = robot.bodies[b].capsules;
     const bool many = capsules.size() > FEW, shaped = lengths.shapes_decide && robot.bodies[b].shape >= 0;
@@ -147,14 +148,14 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
         near_body = Boxes(body, 0).near(block, asked, blocked);
         if (near_body == 0) continue;
       }
-      // By obstacles: lanes that the true shape is to decide, and the first capsule that touches.
+      // By obstacle: lanes that the true shape must decide, and the first capsule that touches.
       Mask open[LANES], opened = 0;
       int first[LANES];
       for (int i = capsules.end - 1; i >= capsules.first; i--) {
         const float radius = lengths.capsules[i];
         PlacedCapsule& capsule = placed.capsules[i];
         Mask near = layer.tested(i, number) & near_body;
-        // Of several blocks the first makes what the others look at, also where it has nothing for this capsule.
+        // The first of several blocks prepares data for the others, even if it has no obstacle for this capsule.
         if (many ? std::popcount(near) > 2 : blocks > 1 || std::popcount(near) > FEW_OBSTACLES) {
           near &= near_obstacles(block, many || number == 0 ? make_around(capsule, radius) : capsule.around);
         }

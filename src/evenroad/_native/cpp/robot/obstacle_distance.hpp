@@ -15,7 +15,7 @@ EVENROAD_INLINE Vec3x16 turned_into(const Obstacle& obstacle, Vec3x16 v) {
           dot(v, spread(Vec3{r[2], r[5], r[8]}))};
 }
 
-/// Of points as an obstacle of this form sees them.
+/// Return the squared distances of points in the frame of an obstacle of this form.
 EVENROAD_INLINE Floats16 squared_distance(Form form, const Obstacle& obstacle, Vec3x16 point) {
   const Floats16 zero{}, z = max(abs(point.z) - obstacle.half.z, zero);
   if (form == Form::CYLINDER) {
@@ -26,7 +26,7 @@ EVENROAD_INLINE Floats16 squared_distance(Form form, const Obstacle& obstacle, V
   return dot(gap, gap);
 }
 
-/// Of the nearest of some points along segments.
+/// Return the squared distance of the nearest of some points along segments.
 EVENROAD_INLINE Floats16 squared_distance(Form form, const Obstacle& obstacle, Vec3x16 centre, Vec3x16 half,
                                           std::span<const float> along) {
   centre = centre - spread(obstacle.centre);
@@ -40,8 +40,8 @@ EVENROAD_INLINE Floats16 squared_distance(Form form, const Obstacle& obstacle, V
 
 }  // namespace detail
 
-/// Return the squared distances of points along a capsule's segment, from -1 to 1, from an obstacle without the
-/// rounding of its edges: of the nearest one.  The form is looked at once, not at each point.
+/// Return the squared distance of the nearest of some points along a capsule's segment, from -1 to 1, from an obstacle
+/// without its rounding.  The form is tested once, not for each point.
 EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, const PlacedCapsule& capsule,
                                           std::span<const float> along) {
   const Vec3x16 &centre = capsule.centre, &half = capsule.half;
@@ -50,7 +50,7 @@ EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, const Placed
   return detail::squared_distance(Form::CYLINDER, obstacle, centre, half, along);
 }
 
-/// Return the same of points, seen from the obstacle's centre.
+/// Return the same for points relative to the obstacle's centre.
 EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, Vec3x16 point) {
   if (obstacle.form != Form::ALIGNED) point = detail::turned_into(obstacle, point);
   return detail::squared_distance(obstacle.form, obstacle, point);

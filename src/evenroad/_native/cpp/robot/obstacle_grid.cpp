@@ -1,5 +1,5 @@
-// Distances from the nearest obstacle: by each obstacle, sixteen cells of a row at once, of the cells near it; of all
-// others by which cells obstacles are in.
+// Distances from the nearest obstacle.  For cells near an obstacle they are computed from it, sixteen cells of a row at
+// once.  For all others they come from the cells that obstacles occupy.
 #include "robot/obstacle_grid.hpp"
 
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Parts of a cell that a byte counts.
+/// Fraction of a cell that is the unit of a byte.
 constexpr int PARTS = 8;
 
-/// Distances of the middles of cells, row by row along z; what is beyond a row is not read.
+/// Distances of the middles of cells, row by row along z; entries beyond a row are not read.
 struct Middles {
   const GridLayout& layout;
   std::size_t row;
@@ -29,8 +29,8 @@ struct Middles {
   double middle(int axis, int cell) const { return layout.low[axis] + (cell + 0.5) * layout.cell; }
 };
 
-/// Bring in the distances of an obstacle from the cells whose middles are within `most` of the box around it; it is cut
-/// off where the robot never comes, and cells may lie by half a side beyond.
+/// Add the distances of an obstacle from the cells whose middles are within `most` of the box around it.  The obstacle
+/// is cut off beyond the robot's reach, and cells may lie half a side beyond.
 void bring_in(const Obstacle& obstacle, const std::array<double, 6>& box, double most, Middles& all) {
   int first[3], last[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -79,7 +79,7 @@ ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridLayout& la
       const std::uint8_t* there = &away[(static_cast<std::size_t>(x) * layout.cells[1] + y) * layout.cells[2]];
       for (int z = 0; z < layout.cells[2]; z++) {
         float away = std::max(row[z], 0.0F);
-        // A ball of half a cell about the middle is within the cell, and all of that is so far at least.
+        // A ball of half a cell about the middle lies within the cell, and all of it is at least this far.
         if (row[z] >= most && there[z] > 0) {
           away = std::max(away, grid.cell * (0.5F + static_cast<float>(there[z]) / STEPS));
         }

@@ -1,7 +1,7 @@
-// A grid over obstacles: of the middle of each cell how far it is from the nearest one.
+// A grid of the distances from each cell's middle to the nearest obstacle.
 //
-// Of a place both bounds are known: it is nearer, or farther, than the middle of its cell by the way between them at
-// most.  So it tells what is far, and near enough what is met.
+// It bounds the distance of any point from both sides: this differs from that of its cell's middle by at most the
+// distance between them.  So it proves most separations and many contacts.
 #pragma once
 
 #include "robot/grid_contact.hpp"
@@ -9,11 +9,11 @@
 
 namespace evenroad::robot {
 
-/// Return the grid over obstacles within a box that are known to `exact` [m]; nothing of the robot leaves the box.
+/// Return the grid over obstacles within a box that contains the robot; their error is `exact` [m].
 ObstacleGrid make_obstacle_grid(const Obstacles& obstacles, const GridLayout& layout,
                                 std::span<const std::array<double, 6>> boxes, float exact);
 
-/// Return the masks of lanes in which an obstacle may be within `near` of a place, and is within `touching` for sure.
+/// Return the masks of lanes in which an obstacle may be within `near` of a point, and certainly is within `touching`.
 EVENROAD_INLINE NearAndSure query(const ObstacleGrid& grid, Vec3x16 point, float near, float touching) {
   const Floats16 zero{};
   const Vec3x16 from = point - spread(grid.low);

@@ -1,5 +1,5 @@
-// Each capsule is looked up in the grid at sixteen configurations; where something is near, lane by lane, the tree
-// names obstacles, and each of these is tested once for all lanes.
+// Each capsule is looked up in the grid at sixteen configurations.  In lanes with a near obstacle, the tree finds the
+// obstacles, and each of these is tested once for all lanes.
 #include "robot/obstacle_tree.hpp"
 
 #include <algorithm>
@@ -14,24 +14,25 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Cells of the grid for each obstacle, and at most.
+/// Number of cells of the grid per obstacle, and largest number.
 constexpr double CELLS_EACH = 64, MOST_CELLS = 400'000;
 
-/// By how much tests that may be left out are wider than those that decide, more than all roundings [m].
+/// Excess width of tests that may skip others, more than all rounding errors [m].
 constexpr float WIDER = 4e-6F;
 
-/// By how much what the grid says is met has to be deeper, more than all roundings [m].
+/// Least depth of a contact that the grid proves, more than all rounding errors [m].
 constexpr float DEEPER = 2e-5F;
 
-/// Lanes in which a capsule is no farther from where it is in one are looked at together, in parts of its radius.
+/// Distance between a capsule's positions up to which lanes are tested together, in parts of its radius.
 constexpr float MOST_ASIDE = 0.5F;
 
-/// Obstacles that were tested for a capsule, or decided for a body, in some lanes: what is forgotten is done again.
+/// A cache of obstacles that were tested for a capsule, or decided for a body, in some lanes; lost entries are tested
+/// again.
 class Done {
  public:
   Done() { keys_.fill(-1); }
 
-  /// Return the lanes of an obstacle that are done, none of a new one.
+  /// Return the lanes of an obstacle that are done; none for a new one.
   Mask& of(int part, int obstacle) {
     const std::int64_t key = (static_cast<std::int64_t>(part) << 32) + obstacle;
     const std::size_t slot = static_cast<std::size_t>(obstacle) % keys_.size();
@@ -68,11 +69,11 @@ struct Part {
   int body, capsule;
   const PlacedCapsule& placed;
   std::span<const float> samples;
-  float half, radius;  // of its segment half the length; of its spheres
+  float half, radius;  // half the length of its segment; radius of its spheres
   bool shaped;         // whether the body's true shape decides
 };
 
-/// One check: what it is of, and what is known so far.
+/// One check: its subject, and the results so far.
 struct Check {
   const Robot& robot;
   const Lengths& lengths;
@@ -83,12 +84,12 @@ struct Check {
   Mask blocked;
   Done tested, decided;
 
-  /// Return the lanes in which a capsule may meet something, and of all lanes those in which it surely does.
+  /// Return the lanes in which a capsule may touch an obstacle, and those of all lanes in which it certainly does.
   NearAndSure near_lanes(const Part& of) const {
     const ObstacleGrid& grid = layer.obstacles->tree->grid;
     const auto& [centre, along, around] = of.placed;
     const float near = of.radius + WIDER;
-    // Where a true shape decides, or what is met is to be named, a grid of distances does not tell.
+    // The grid proves no contact if a true shape decides, or if the obstacle must be named.
     const float touching = of.shaped || found != nullptr || !layer.all[of.capsule] ? 0 : of.radius - DEEPER;
     if (of.samples.size() > 2 && (query(grid, centre, of.half + near, 0).near & ~blocked) == 0) return {};
     NearAndSure all;
@@ -99,7 +100,7 @@ struct Check {
     return all;
   }
 
-  /// Return in which lanes a body's true shape touches an obstacle, of those in which a capsule of it does.
+  /// Return the lanes in which a body's true shape touches an obstacle, among those in which a capsule does.
   Mask decide(int b, int obstacle, Mask asked) {
     const Body& body = robot.bodies[b];
     const Obstacle& there = layer.obstacles->rows[obstacle];
@@ -122,7 +123,7 @@ struct Check {
                                   &placed.kept);
   }
 
-  /// Test the obstacles of a block that may be near a capsule; return whether that is enough.
+  /// Test the obstacles of a block that may be near a capsule; return whether the check is finished.
   bool meet_block(const Part& of, int number, Mask near) {
     const Obstacles& all = *layer.obstacles;
     for (near &= layer.tested(of.capsule, number); near != 0; near &= near - 1) {
@@ -140,7 +141,8 @@ struct Check {
     return false;
   }
 
-  /// Test what is near a capsule in some lanes, where it lies within one at `at`; return whether that is enough.
+  /// Test the obstacles near a capsule in some lanes, in which it lies within a capsule at `at`; return whether the
+  /// check is finished.
   bool meet_near(const Part& of, const CapsuleAt& at, Mask lanes) {
     const Obstacles& all = *layer.obstacles;
     Walk walk(all.tree->boxes);
@@ -151,7 +153,7 @@ struct Check {
     return false;
   }
 
-  /// Test a capsule against what is near it in some lanes; return whether that is enough.
+  /// Test a capsule against the obstacles near it in some lanes; return whether the check is finished.
   bool meet(const Part& of, Mask lanes) {
     const auto& [centre, along, around] = of.placed;
     while ((lanes &= ~blocked) != 0) {
@@ -160,7 +162,7 @@ struct Check {
                    of.radius + WIDER};
       Mask together = Mask{1} << lane;
       if ((lanes & (lanes - 1)) != 0) {
-        // How far ends, and so all of it, are from those of this lane.
+        // Distance of its endpoints, and so of all its points, from those of this lane.
         const Vec3x16 aside = centre - spread(at.centre), turned = along - spread(at.half);
         const Vec3x16 one = aside + turned, other = aside - turned;
         const Floats16 away = max(dot(one, one), dot(other, other));
@@ -219,7 +221,7 @@ std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacle
 Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, PlacedRobot& placed, Mask blocked,
                      Wanted wanted, Contact* found) {
   Check check{robot, lengths, layer, placed, wanted, found, blocked, {}, {}};
-  // From the outermost bodies inwards: those meet obstacles most often.
+  // From the outermost bodies inwards, because those touch obstacles most often.
   for (int b = static_cast<int>(robot.bodies.size()) - 1; b >= robot.fixed_bodies; b--) {
     const Range capsules = robot.bodies[b].capsules;
     if (capsules.size() > FEW) {

@@ -1,6 +1,6 @@
 // Contact of sixteen configurations with many obstacles: a grid and a tree find the few that are near.
 //
-// Which obstacles are tested differs from the check of few, and how a lane is decided does not: results are the same.
+// It tests other obstacles than the check of few, but decides a lane in the same way, so results are the same.
 #pragma once
 
 #include "robot/exact_obstacle.hpp"
@@ -8,17 +8,17 @@
 
 namespace evenroad::robot {
 
-/// Number of obstacles from which on a tree is faster than all blocks in a row.
+/// Number of obstacles from which a tree is faster than all blocks in sequence.
 constexpr int MANY_OBSTACLES = 320;
 
-/// Bring obstacles, with what belongs to them, into an order in which sixteen neighbours are near each other.
+/// Sort obstacles, with their other data, so that groups of sixteen are near each other.
 void sort_neighbours(std::vector<std::pair<Exact, int>>& obstacles);
 
-/// Return the grid and the tree over obstacles in that order; nothing of the robot is farther from the origin than
+/// Return the grid and the tree over obstacles in that order.  No point of the robot is farther from the origin than
 /// `reach`, and no capsule is wider than `widest` [m].
 std::unique_ptr<const ObstacleTree> make_obstacle_tree(const Obstacles& obstacles, double reach, double widest);
 
-/// Return the same as `meeting_obstacles`.
+/// Return the result of `meeting_obstacles`.
 Mask meeting_in_tree(const Robot& robot, const Lengths& lengths, const Layer& layer, PlacedRobot& placed, Mask blocked,
                      Wanted wanted, Contact* found);
 

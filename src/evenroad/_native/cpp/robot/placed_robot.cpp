@@ -1,4 +1,4 @@
-// Forward kinematics of sixteen configurations: angles are reduced in double precision, all else is single.
+// Forward kinematics of sixteen configurations.  Angles are reduced in double precision; the rest is single.
 #include "robot/placed_robot.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct SineAndCosine {
   Floats16 sine, cosine;
 };
 
-/// Of angles from -pi to pi, to 2e-7.
+/// Return sine and cosine of angles from -pi to pi, to 2e-7.
 EVENROAD_INLINE SineAndCosine sine_and_cosine(Floats16 angle) {
   const Floats16 size = abs(angle);
   // sin x = sin(pi - x); cos x = sin(pi/2 - |x|).
@@ -43,7 +43,7 @@ EVENROAD_INLINE Doubles16 rounded(Doubles16 a) {
   return a;
 }
 
-/// Return values of a frame: single precision has no digits for a large angle, so whole turns are taken off before.
+/// Return values of a frame.  Single precision has no digits for a large angle, so whole turns are subtracted before.
 EVENROAD_INLINE Floats16 values_of(const Frame& frame, const Doubles16& coordinate) {
   Doubles16 value = coordinate * frame.multiplier + frame.offset;
   if (!frame.slides) value = value - (2.0 * std::numbers::pi) * rounded(value * (0.5 / std::numbers::pi));

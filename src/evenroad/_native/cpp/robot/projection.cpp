@@ -9,8 +9,8 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Limits below this are those of lines and doors: what is left of the error there would make a path zigzag, so that
-/// the robot drives it slowly.
+/// Limits below this are those of lines and doors.  A remaining error would make such a path zigzag, which the robot
+/// drives slowly.
 constexpr double THIN_KEEP = 5e-3, ENOUGH_OF_THIN = 0.02;
 
 }  // namespace
@@ -88,7 +88,7 @@ void Projection::write_columns() {
       if (std::ranges::any_of(keep.of(error_), [](double x) { return x != 0.0; })) {
         state_.write_column(keep, joint, column);
       } else {
-        // What is well within its limit may move.
+        // A residual well within its limit may change.
         std::ranges::fill(column, 0.0);
       }
     }

@@ -15,17 +15,18 @@ class Projection {
  public:
   Projection(const Keeps& keeps, const Projecting& how);
 
-  /// Move a configuration, (dim,), by at most that many steps until all residuals are short enough; return whether.
+  /// Move a configuration, (dim,), by at most that many steps until all residuals are short enough; return whether they
+  /// are.
   bool move(std::span<double> q, int steps);
 
-  /// Take off a short way, (dim,), from a configuration what leaves the constraints, as far as a first derivative says.
+  /// Remove from a short step, (dim,), the part that leaves the constraints, to first order.
   void bend(std::span<const double> q, std::span<double> direction);
 
  private:
-  /// Keep of all residuals what is to be taken off; return whether all are short enough.
+  /// Store the part of all residuals that must be removed; return whether all are short enough.
   bool measure();
   void write_columns();
-  /// Write the step that takes the error off, damped by a weight times the square of the error.
+  /// Write the step that removes the error, damped by a weight times the square of the error.
   void solve(double weight);
 
   const Keeps& keeps_;

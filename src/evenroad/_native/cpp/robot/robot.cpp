@@ -1,4 +1,4 @@
-// A robot's tables from named arrays: bodies, pairs of capsules, and lengths with what single precision loses added.
+// A robot's tables from named arrays: bodies, pairs of capsules, and lengths enlarged by the error of single precision.
 #include "robot/robot.hpp"
 
 #include <algorithm>
@@ -11,8 +11,7 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double LEAST_SQUARED_LENGTH =
-    1e-30;  // what a squared length is taken for at least where one divides by it [m^2]
+constexpr double LEAST_SQUARED_LENGTH = 1e-30;  // lower bound of a squared length that is a divisor [m^2]
 
 /// A number of something, within 0 and `count`.
 int index(std::int64_t value, std::size_t count, const char* name) {
@@ -175,7 +174,7 @@ std::vector<Ball> add_bodies(Robot& robot, const GivenRobot& given) {
     robot.fixed_bodies += fixed;
     const Ball ball = ball_around({given}, body.capsules);
     body.centre = single(ball.centre);
-    // Boxes are wider by twice the padding: they must not miss what the spheres, wider by one, would find.
+    // Boxes are wider by twice the padding, so that they do not miss contacts of the spheres, which are wider by one.
     robot.lengths.bodies.push_back({static_cast<float>(ball.radius + given.padding),
                                     half_extents({given}, body.capsules, ball.centre, 2.0 * given.padding)});
     robot.bodies.push_back(body);

@@ -1,8 +1,8 @@
-// A robot as its checks read it: frames that joints move, bodies of capsules on them, pairs that may touch, and hulls.
+// A robot in the form of checks: frames that joints move, bodies of capsules on them, pairs that may touch, and hulls.
 //
-// Frame 0 is the root link's, which does not move; every other turns about, or slides along, its own z axis.  A body is
-// a link with capsules.  Bodies of frame 0 come first, and the capsules of a body follow each other.  Where a capsule
-// touches an obstacle the true shape of its body decides, if it is known.
+// Frame 0 is the root link's, which does not move.  Every other frame turns about, or slides along, its z axis.  A body
+// is a link with capsules.  Bodies of frame 0 come first, and the capsules of a body are consecutive.  If a capsule
+// touches an obstacle, the true shape of its body decides, if it is known.
 #pragma once
 
 #include <cstdint>
@@ -26,11 +26,11 @@ struct Frame {
 
 struct Capsule {
   int body;
-  Vec3 centre, half;  // middle of its segment, and from there to an end
+  Vec3 centre, half;  // middle of its segment, and the vector from there to an endpoint
   bool is_ball;
   Range samples;                      // of the spheres that cover it, in Robot::samples
   float half_length, one_by_squared;  // of the segment: half its length, one over the square of that
-  float slack;                        // by how much the spheres are larger than the capsule
+  float slack;                        // excess of the spheres over the capsule
 };
 
 struct Body {
@@ -38,10 +38,10 @@ struct Body {
   Range capsules;
   Vec3 centre;               // of a ball and of a box around its capsules
   int hulls = -1;            // root of its tree of hulls, or -1
-  int shape = -1;            // root of the parts of its true shape, or -1: its capsules are
+  int shape = -1;            // root of the parts of its true shape, or -1 if that is its capsules
   bool encloses = false;     // whether surfaces of the shape have an inside
-  std::vector<Vec3> points;  // one of each part of the shape that hangs together
-  Range inside;              // of the balls inside of its true shape
+  std::vector<Vec3> points;  // one point of each connected part of the shape
+  Range inside;              // of the balls inside its true shape
 };
 
 /// A ball in the frame of a body.
@@ -70,7 +70,7 @@ struct PairLengths {
   float reach;  // sum of radii
 };
 
-/// All lengths by which a check decides: of larger bodies all else stays the same.
+/// All lengths that a check uses.  For larger bodies, only these change.
 struct Lengths {
   std::vector<float> capsules;  // radii of covering spheres
   std::vector<BodyLengths> bodies;
@@ -78,13 +78,13 @@ struct Lengths {
   std::vector<float> body_pairs;    // centres of balls around bodies farther apart than this: none of them touch
   std::vector<float> hull_margins;  // hulls nearer than this count as touching
   std::vector<float> shapes;        // of bodies: true shapes nearer than this to an obstacle touch it
-  bool shapes_decide = true;        // where they are known; else capsules alone do
+  bool shapes_decide = true;        // if they are known; else capsules alone decide
 
-  /// Bodies larger by a margin where obstacles are concerned; they may be as near to each other as before.
+  /// Bodies larger by a margin for obstacles; distances between bodies do not change.
   Lengths enlarged(float margin) const;
 };
 
-/// A sphere over a capsule that does not move, as it is.
+/// A sphere over a capsule that does not move, in double precision.
 struct FixedSphere {
   int capsule;
   double centre[3], radius;
@@ -101,13 +101,13 @@ struct Robot {
   HullTree<float> hulls, shapes;
   std::vector<Ball> inside;  // of true shapes
   Lengths lengths;
-  OwnMatrix<double> arms{0, 0};        // (dim, capsules): how fast a coordinate moves a capsule at most [m/rad]
+  OwnMatrix<double> arms{0, 0};        // (dim, capsules): largest speed of a capsule by a coordinate [m/rad]
   OwnMatrix<double> pair_arms{0, 0};   // (dim, pairs, then pairs by hulls): the two against each other
   OwnMatrix<double> shape_arms{0, 0};  // (dim, bodies): the farthest corner of a true shape
   std::vector<FixedSphere> fixed_spheres;
   int fixed_bodies = 0;
   int hull_pairs = 0;
-  double padding = 0;  // by which radii are larger, so that rounding frees nothing that touches
+  double padding = 0;  // enlargement of radii, so that rounding frees no contact
   double reach = 0;    // no point is ever farther from the root's origin
 
   int dim() const { return static_cast<int>(joints.size()); }
@@ -115,7 +115,7 @@ struct Robot {
   int first_hull_pair() const { return static_cast<int>(body_pairs.size()) - hull_pairs; }
 };
 
-/// The arrays that a robot is made of, as Python names them; sizes in metres, as they are.
+/// The arrays of a robot, with the names of Python; sizes in metres, without padding.
 struct GivenRobot {
   struct {
     std::span<const std::int64_t> parent, coordinate;
@@ -128,7 +128,7 @@ struct GivenRobot {
   struct {
     std::span<const std::int64_t> body, first_sample;
     std::span<const double> centre, half, radius, covering, samples;
-    std::span<const double> padding;  // by which each is larger where obstacles are concerned
+    std::span<const double> padding;  // enlargement of each for obstacles
   } capsules;
   struct {
     std::span<const std::int64_t> bodies;
@@ -136,7 +136,7 @@ struct GivenRobot {
   } pairs;
   GivenHulls hulls;
   struct {
-    std::span<const std::int64_t> body;  // of each part, rising
+    std::span<const std::int64_t> body;  // of each part, ascending
     GivenParts parts;
     struct {
       std::span<const std::int64_t> first_point;  // of each body, then the number of points

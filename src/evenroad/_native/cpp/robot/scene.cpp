@@ -1,4 +1,4 @@
-// A scene's obstacles for one robot: those in its reach, boxes around sixteen of them, and who is tested against which.
+// A scene's obstacles for one robot: those in its reach, boxes around sixteen of them, and the pairs to test.
 #include "robot/scene.hpp"
 
 #include <algorithm>
@@ -15,9 +15,9 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double STANDS = 2e-6;  // a base may reach so deep into what it stands on [m]
-/// Return whether the true shape of a body that does not move touches an obstacle, which is a little smaller then: a
-/// base that stands on a table does not.
+constexpr double STANDS = 2e-6;  // allowed depth of a base in its support [m]
+/// Return whether the true shape of a fixed body touches an obstacle.  The obstacle is slightly smaller, so that a base
+/// may stand on a table.
 bool base_touches(const Robot& robot, const PlacedRobot& placed, const Body& body, Exact o, double margin) {
   double extents[3];
   write_extents(o, extents);
@@ -56,8 +56,8 @@ Reached in_reach(const Robot& robot, const GivenObstacles& given, double clearan
   return reached;
 }
 
-/// Return the layer of obstacles, with a tree where they are many, for capsules that are `widest` at most; they are
-/// brought into its order.
+/// Return the layer of obstacles, with a tree if there are many, for capsules of at most `widest`; obstacles are sorted
+/// into its order.
 Layer layer_of(Reached reached, const GivenObstacles& given, double reach, double widest, Scene& scene) {
   const bool many = static_cast<int>(reached.size()) >= MANY_OBSTACLES;
   if (many) sort_neighbours(reached);
@@ -78,13 +78,13 @@ Layer layer_of(Reached reached, const GivenObstacles& given, double reach, doubl
   return {std::move(all), std::move(tested), std::move(tests_all)};
 }
 
-/// Find a capsule that does not move and an obstacle that it touches.
+/// Find a fixed capsule and an obstacle that it touches.
 void find_fixed_contact(const Robot& robot, const Reached& reached, const GivenObstacles& given, Scene& scene) {
   std::optional<PlacedRobot> placed;
   for (const FixedSphere& sphere : robot.fixed_spheres) {
     const Body& body = robot.bodies[robot.capsules[sphere.capsule].body];
     for (const auto& [obstacle, k] : reached) {
-      // Without a clearance: what does not move cannot keep away.
+      // Without a clearance, because a fixed body cannot move away.
       const double near = sphere.radius + obstacle.rounding;
       if (!given.tested(sphere.capsule, k) || squared_distance(obstacle, sphere.centre) >= near * near) continue;
       if (body.shape >= 0) {
@@ -98,7 +98,7 @@ void find_fixed_contact(const Robot& robot, const Reached& reached, const GivenO
   }
 }
 
-/// Return the row of an obstacle of the scene, -1 where it is not in a layer.
+/// Return the row of an obstacle of the scene, -1 if it is not in a layer.
 int row_of(const Layer& layer, std::int64_t number) {
   if (layer.obstacles == nullptr || number >= static_cast<std::int64_t>(layer.obstacles->row_of.size())) return -1;
   return layer.obstacles->row_of[static_cast<std::size_t>(number)];

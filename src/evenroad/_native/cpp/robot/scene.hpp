@@ -1,4 +1,4 @@
-// Obstacles as checks read them: boxes, cylinders and what is round, and surfaces (clouds and meshes).
+// Obstacles in the form of checks: boxes, cylinders, spheres and capsules, and surfaces (clouds and meshes).
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ struct Obstacle {
   float rounding;
 };
 
-/// Return where an obstacle's frame is: the same in all lanes.
+/// Return the pose of an obstacle's frame, the same in all lanes.
 PlacedFrame frame_of(const Obstacle& obstacle);
 
 /// Boxes around sixteen obstacles.
@@ -33,16 +33,16 @@ struct Block {
   Vec3x16 centre, half;
 };
 
-/// A byte for each cell: how far the middle of it is from the nearest obstacle, rounded, counted in `step`.
+/// A byte for each cell: the distance of its middle from the nearest obstacle, rounded, in units of `step`.
 struct ObstacleGrid {
   int cells[3] = {0, 0, 0};
   Vec3 low, size;  // lower corner, and extents
   float one_by_cell = 0, cell = 0, step = 0;
-  float exact = 0;  // of distances that are not below this only lower bounds are known
+  float exact = 0;  // distances above this are only lower bounds
   std::vector<std::uint8_t> distances;
 };
 
-/// What finds the few of many obstacles that are near: a grid of distances, and a tree whose leaves are the blocks.
+/// The index of many obstacles: a grid of distances, and a tree whose leaves are the blocks.
 struct ObstacleTree {
   ObstacleGrid grid;
   BoxTree boxes;
@@ -51,18 +51,18 @@ struct ObstacleTree {
 /// Obstacles in blocks of sixteen.
 struct Obstacles {
   std::vector<Obstacle> rows;
-  HullTree<float> hulls;  // of each a leaf, in its own frame
+  HullTree<float> hulls;  // a leaf for each, in its frame
   std::vector<Block> blocks;
   std::vector<int> row_of;                   // by number in the scene, -1 for none
-  std::unique_ptr<const ObstacleTree> tree;  // where they are many
+  std::unique_ptr<const ObstacleTree> tree;  // if there are many
 };
 
-/// An obstacle as Python gives it, sixteen doubles.
+/// An obstacle in the form of Python, sixteen doubles.
 struct GivenObstacle {
   double kind;     // as below
-  double size[3];  // full extents of a box; radius and length without caps of the others [m]
+  double size[3];  // full extents of a box; radius and length without caps for the others [m]
   double rotation[9], translation[3];
-  double clearance;  // by which it is larger, round its edges [m]
+  double clearance;  // enlargement, with rounded edges [m]
 };
 enum class GivenKind : std::uint8_t { BOX, SPHERE, CYLINDER, CAPSULE };
 
@@ -73,7 +73,7 @@ struct SurfaceObstacle {
   std::vector<bool> tested;  // capsules that are tested against it
 };
 
-/// Obstacles, and which of them capsules are tested against: (capsules, blocks), a bit for each obstacle.
+/// Obstacles, and those that each capsule is tested against: (capsules, blocks), a bit for each obstacle.
 struct Layer {
   std::shared_ptr<const Obstacles> obstacles;
   OwnMatrix<std::uint16_t> tested{0, 0};
@@ -82,16 +82,16 @@ struct Layer {
 
 struct Scene {
   Layer obstacles;  // those that the robot can reach
-  Layer changed;    // those that came later: no capsule is tested against what they replace
+  Layer changed;    // later ones; no capsule is tested against the obstacles that they replace
   std::vector<SurfaceObstacle> surfaces;
-  std::vector<int> surfaces_tested;           // by capsule: how many surfaces
+  std::vector<int> surfaces_tested;           // by capsule: number of surfaces
   std::shared_ptr<const Surface> around;      // a grid around all surfaces, or none
-  double added = 0;                           // by how much obstacles are larger at most, for rounding [m]
+  double added = 0;                           // largest enlargement of obstacles for rounding [m]
   int too_far = -1;                           // the first obstacle that is too far or too large for single precision
   std::pair<int, int> fixed_contact{-1, -1};  // a capsule that does not move, and an obstacle that it touches
 };
 
-/// Obstacles with their numbers, and which capsules are tested against them: (capsules, obstacles).
+/// Obstacles with their numbers, and the capsules that are tested against them: (capsules, obstacles).
 struct GivenObstacles {
   std::span<const GivenObstacle> rows;
   std::span<const std::int64_t> numbers;
@@ -100,8 +100,8 @@ struct GivenObstacles {
   int number(int row) const { return static_cast<int>(numbers[row]); }
 };
 
-/// Return a scene in which obstacles of some numbers are gone and others have come; nothing where all of it has to be
-/// made anew.  What stays is shared.
+/// Return a scene without obstacles of some numbers and with new ones; nothing if the whole scene must be rebuilt.
+/// Unchanged parts are shared.
 std::optional<Scene> change_scene(const Robot& robot, const Scene& before, std::span<const std::int64_t> gone,
                                   const GivenObstacles& come, double clearance);
 

@@ -1,4 +1,4 @@
-// Pairs of bodies by balls around them, pairs of capsules by balls around these, and then segments; hulls last.
+// Contact of bodies by balls around them, then by balls around capsules, then by segments; hulls come last.
 #include "robot/self_contact.hpp"
 
 namespace evenroad::robot {
@@ -13,11 +13,12 @@ EVENROAD_INLINE Mask within(const Vec3x16& a, const Vec3x16& b, float near) {
 
 }  // namespace
 
-// With segments `centre + s half`, s from -1 to 1: the best t for all s, cut to the range, then the best s for that t,
-// cut, then the best t for that s, cut again.  Without the last step contacts can be missed by millimetres where s was
-// cut (after V. Lumelsky, 1985, and C. Ericson, Real-Time Collision Detection, 2005, section 5.1.9).  The first t is
-// that of the parts across the first segment.  Written with products of lengths alone, as usual, it loses twice the
-// digits where segments are nearly parallel; so, the distance errs by about the rounding of the half lengths.
+// Segments are `centre + s half`, s from -1 to 1.  First the best t for all s is found, clipped to the range, then the
+// best s for that t, clipped, then the best t for that s, clipped again.  Without the last step, contacts can be missed
+// by millimetres if s was clipped (after V. Lumelsky, 1985, and C. Ericson, Real-Time Collision Detection, 2005,
+// section 5.1.9).  The first t comes from components across the first segment.  The usual formula with products of
+// lengths loses twice the digits for nearly parallel segments; with components, the error is about the rounding of the
+// half lengths.
 Floats16 squared_distance(const PlacedCapsule& a, const PlacedCapsule& b, const CapsulePair& pair) {
   const Vec3x16 r = a.centre - b.centre, e = a.half, f = b.half;
   const Floats16 ef = dot(e, f), er = dot(e, r), fr = dot(f, r);
@@ -57,7 +58,7 @@ Mask meeting_itself(const Robot& robot, const Lengths& lengths, PlacedRobot& pla
         const PlacedCapsule &one = placed.capsules[pair.first], &two = placed.capsules[pair.second];
         Mask touching = within(one.centre, two.centre, near);
         if ((touching & ~blocked) == 0) continue;
-        // Of two balls that was all.
+        // Two balls need no more.
         if (pair.one_by_ee + pair.one_by_ff > 0) touching = capsules_touching(one, two, pair, reach);
         if (p >= by_hulls) {
           if (undecided == 0 && touching != 0) first_undecided = k;

@@ -5,7 +5,8 @@
 
 namespace evenroad::robot {
 
-/// Return `blocked` and the mask of lanes in which two bodies of a pair touch; `found`: where given, the first contact.
+/// Return `blocked` and the mask of lanes in which two bodies of a pair touch; `found`, if given, gets the first
+/// contact.
 Mask meeting_itself(const Robot& robot, const Lengths& lengths, PlacedRobot& placed, Mask blocked, Wanted wanted,
                     Contact* found = nullptr);
 

@@ -1,4 +1,4 @@
-// From the largest shell to the smallest: what lies within what, and whether triangles of two cross.
+// From the largest shell to the smallest: the nesting of shells, and whether triangles of two cross.
 #include "robot/shells.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double CELLS_OF_SHELL = 100'000;  // of a grid that triangles of a shell are sorted into, about
+constexpr double CELLS_OF_SHELL = 100'000;  // approximate number of cells of the grid for a shell's triangles
 
 /// Return six times the volume of a tetrahedron, with its sign.
 double volume_of(const double* a, const double* b, const double* c, const double* d) {
@@ -112,7 +112,7 @@ bool is_box_within(const Shell& one, const Shell& other) {
   return true;
 }
 
-/// Return the smallest of larger shells that a shell lies within, -1 where there is none; nothing where it crosses one.
+/// Return the smallest larger shell that contains a shell, -1 if there is none; nothing if it crosses one.
 std::optional<int> solid_around(std::span<const Shell> shells, std::span<const int> larger, int number) {
   const Shell& shell = shells[number];
   int found = -1;
@@ -120,7 +120,7 @@ std::optional<int> solid_around(std::span<const Shell> shells, std::span<const i
     if (do_shells_cross(shell, shells[other])) return std::nullopt;
     if (!is_box_within(shell, shells[other])) continue;
     const double point[3] = {shell.triangles[0], shell.triangles[1], shell.triangles[2]};
-    // They come from the largest to the smallest.
+    // They are sorted from the largest to the smallest.
     if (winding_at(point, shells[other].triangles, true) != 0) found = other;
   }
   return found;

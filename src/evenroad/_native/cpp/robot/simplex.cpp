@@ -11,7 +11,7 @@ namespace {
 
 double determinant(const Vector& a, const Vector& b, const Vector& c) { return dot(a, cross(b, c)); }
 
-/// Return whether the origin is inside of four corners: their weights in it, up to a factor, have one sign.
+/// Return whether the origin is inside four corners: its weights, up to a factor, have one sign.
 bool is_inside(const Simplex& s) {
   const auto& c = s.corners;
   const double a = determinant(c[1], c[2], c[3]), b = -determinant(c[0], c[2], c[3]);
@@ -19,7 +19,7 @@ bool is_inside(const Simplex& s) {
   return std::min({a, b, d, e}) > 0.0 || std::max({a, b, d, e}) < 0.0;
 }
 
-/// What of a simplex is nearest to the origin, and which corners that is between, as bits.
+/// The nearest point of a simplex to the origin, and the corners whose hull has it, as bits.
 struct NearestPoint {
   Vector point;
   int between;
@@ -36,7 +36,7 @@ NearestPoint nearest_of_two(const Simplex& s, int i, int j) {
   return {point, 1 << i | 1 << j, squared_length(point)};
 }
 
-/// Return the same of a triangle; an edge is left out where the origin is on the inner side of it.
+/// Return the same for a triangle; an edge is skipped if the origin is on its inner side.
 NearestPoint nearest_of_three(const Simplex& s, int i, int j, int k) {
   const Vector &a = s.corners[i], &b = s.corners[j], &c = s.corners[k];
   const Vector normal = cross(b - a, c - a);

@@ -1,4 +1,4 @@
-// What of up to four points is nearest to the origin.
+// The nearest point to the origin of a simplex of up to four points.
 #pragma once
 
 #include "robot/vector.hpp"
@@ -8,7 +8,7 @@ namespace evenroad::robot {
 /// Up to four points of the difference of two hulls.
 struct Simplex {
   Vector corners[4];
-  int numbers[4];  // that go with the corners
+  int numbers[4];  // of the corners
   int size = 0;
 };
 
@@ -18,7 +18,7 @@ struct Ended {
   int size = 0;
 };
 
-/// Keep the corners that the nearest point to the origin is between, and write that point; none where it is inside.
+/// Keep the corners whose hull has the nearest point to the origin, and write that point; none if the origin is inside.
 void nearest(Simplex& s, Vector& v);
 
 }  // namespace evenroad::robot

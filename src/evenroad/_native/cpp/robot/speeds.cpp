@@ -1,10 +1,10 @@
-// A point that a joint turns moves across the joint's axis, as fast as it is far from it.  Its acceleration is a sum
-// over pairs of joints: with rates r, of joints from the root on, at most
+// A point that a joint turns has a speed equal to its distance from the joint's axis.  Its acceleration is a sum over
+// pairs of joints.  With rates r of joints, counted from the root, it is at most
 //
 //   sum over m of r_m arm_m (2 sum over j < m of turn_j + turn_m)
 //
-// where arm_m is how far the point ever is from axis m (1 where that slides), and turn_j is r_j (0 where that slides).
-// For what joint m does to a point is turned by the joints before it, and the point's way by m itself.
+// where arm_m is the largest distance of the point from axis m (1 if that slides), and turn_j is r_j (0 if that
+// slides). The velocity of a point by joint m is turned by the joints before it, and by m itself.
 #include "robot/speeds.hpp"
 
 #include <algorithm>
@@ -14,10 +14,10 @@ namespace evenroad::robot {
 
 namespace {
 
-/// What single precision may lose of velocities, as a share: some tens of roundings.
+/// Error of velocities in single precision, as a share: some tens of roundings.
 constexpr double LOST = 2e-5;
 
-/// Write sums over the coordinates of arms times what the coordinate moves, and times its weight if there are weights.
+/// Write sums over the coordinates of arms times movements, and times weights if there are any.
 void write_sums(const OwnMatrix<double>& arms, std::span<const double> direction, std::span<double> sums,
                 std::span<const double> weights = {}) {
   std::fill(sums.begin(), sums.end(), 0.0);
@@ -28,10 +28,10 @@ void write_sums(const OwnMatrix<double>& arms, std::span<const double> direction
   }
 }
 
-/// Return a number that none of the lanes exceeds, of the roots of squares.
+/// Return an upper bound of the square roots of all lanes.
 double largest_root(Floats16 squares) { return std::sqrt(static_cast<double>(largest(squares))); }
 
-/// Write by what to multiply what each coordinate moves, to have its part of the acceleration; return all turns.
+/// Write the factor of each coordinate's movement in the acceleration; return the sum of all turns.
 double write_weights(const Robot& robot, std::span<const double> direction, std::span<double> weights) {
   std::fill(weights.begin(), weights.end(), -1.0);
   double turns = 0.0;
@@ -43,7 +43,7 @@ double write_weights(const Robot& robot, std::span<const double> direction, std:
     weight = 2.0 * turns + turn;
     turns += turn;
   }
-  // Of coordinates that move several frames it is not known which comes first.
+  // For coordinates that move several frames, the order of joints is unknown.
   for (double& weight : weights) weight = one_each ? std::max(weight, 0.0) : 2.0 * turns;
   return turns;
 }
@@ -93,7 +93,7 @@ void Speeds::take_here(const Robot& robot, const PlacedRobot& placed, std::span<
     const Vec3x16 middle = along + cross(turning, capsule.centre - placed.frames[frame].origin);
     Floats16 square = dot(middle, middle);
     if (!robot.capsules[i].is_ball) {
-      // Between its ends a segment is no faster than at one of them.
+      // No point of a segment is faster than the faster endpoint.
       const Vec3x16 end = cross(turning, capsule.half), one = middle + end, other = middle - end;
       square = max(dot(one, one), dot(other, other));
     }
@@ -102,7 +102,7 @@ void Speeds::take_here(const Robot& robot, const PlacedRobot& placed, std::span<
   for (std::size_t b = robot.fixed_bodies; b < robot.bodies.size(); b++) {
     const Body& body = robot.bodies[b];
     if (body.shape < 0) continue;
-    // Its middle moves, and what is around that turns about it.
+    // Its middle moves, and the points around it also turn about it.
     const HullNode<float>& root = robot.shapes.nodes[body.shape];
     const auto& [along, turning] = velocities_[body.frame];
     const PlacedFrame& frame = placed.frames[body.frame];

@@ -1,4 +1,4 @@
-// How fast a motion moves bodies, at most: what a proof enlarges them by.
+// Bounds of the movement of bodies by a motion, by which a proof enlarges them.
 #pragma once
 
 #include <span>
@@ -8,26 +8,26 @@
 
 namespace evenroad::robot {
 
-/// Lengths that a whole motion moves things by, at most [m].
+/// Largest movements by a whole motion [m].
 struct Speeds {
   std::vector<Floats16> directions;             // of the motions in the sixteen lanes, for `take_here`
-  std::vector<double> capsules, pairs, shapes;  // pairs: the two against each other; shapes: those of bodies
+  std::vector<double> capsules, pairs, shapes;  // pairs: relative movement of the two; shapes: those of bodies
 
   explicit Speeds(const Robot& robot);
 
-  /// Take what holds wherever the motion is, by how far things ever are from the axes that turn them.
+  /// Set bounds that hold for any motion, from the largest distances of bodies from the joints' axes.
   void take_anywhere(const Robot& robot, std::span<const double> direction);
 
-  /// Lower them to what holds along these motions alone, of which none is longer in a coordinate than `longest`.
+  /// Lower the bounds for these motions; none is longer in a coordinate than `longest`.
   ///
-  /// The places are those in the middles of stretches that are all of the motions, each of `half` of one to both sides.
-  /// There velocities are known; from there on they change by no more than accelerations allow.
+  /// The placed robot is in the middles of intervals that cover the motions, with `half` of one on both sides.
+  /// Velocities are known there, and change at most by the accelerations.
   void take_here(const Robot& robot, const PlacedRobot& placed, std::span<const double> longest, double half);
 
   double fastest() const;
 
  private:
-  /// Velocities of a frame's origin, and of its turning.
+  /// Linear velocity of a frame's origin, and angular velocity.
   struct Velocity {
     Vec3x16 along, turning;
   };

@@ -9,7 +9,7 @@ namespace evenroad::robot {
 
 namespace {
 
-/// Nodes are wider than what they hold by this share of the places' size, and of one metre.
+/// Excess width of nodes, as a share of the coordinates' size and of one metre.
 constexpr double WIDER_NODES = 1e-6;
 
 void put(Vec3x16& where, int lane, const double* v) {
@@ -32,11 +32,11 @@ void put(TriangleLeaf& leaf, int lane, const double* t) {
 
 constexpr std::size_t AHEAD = 2 * LANES;
 
-constexpr double CELLS = 400'000;  // of a surface's grid, about
+constexpr double CELLS = 400'000;  // approximate number of cells of a surface's grid
 
-/// Widen a box around all triangles that can be reached to the reach, along each direction in which all is inside.
+/// Widen a box around all reachable triangles to the reach, along each direction in which everything is inside.
 ///
-/// Beyond the box no triangle can be reached, so that one place tells for all that are there.
+/// No triangle beyond the box can be reached, so one point there decides for all.
 void widen_by_inside(const GivenSurface& given, double (&low)[3], double (&high)[3]) {
   double least[3], most[3];
   std::copy_n(low, 3, least), std::copy_n(high, 3, most);
@@ -52,7 +52,7 @@ void widen_by_inside(const GivenSurface& given, double (&low)[3], double (&high)
       point[axis] = 0.5 * (end + reach);
       return winding_at(point, given.solid, given.turned) != 0;
     };
-    // Beyond the box around what is solid nothing is inside.
+    // Beyond the box around the solid triangles, nothing is inside.
     const bool below = least[axis] < low[axis] && -given.reach < low[axis];
     const bool above = most[axis] > high[axis] && given.reach > high[axis];
     if (below && is_inside_beyond(low[axis], -given.reach)) low[axis] = -given.reach;
@@ -60,7 +60,7 @@ void widen_by_inside(const GivenSurface& given, double (&low)[3], double (&high)
   }
 }
 
-/// Write a surface's grid, and how often it winds around each cell.
+/// Write a surface's grid, and its winding numbers around cells.
 void add_grid(Surface& surface, const GivenSurface& given) {
   double low[3], high[3];
   std::copy_n(given.corners.begin(), 3, low), std::copy_n(low, 3, high);
@@ -132,7 +132,7 @@ Surface make_surface(const GivenSurface& given) {
   else
     surface.points.reserve(blocks + LANES);
   for (std::size_t first = 0; first < count; first += LANES) {
-    // Neighbours lie anywhere in memory: those of some blocks later are fetched.
+    // Neighbours are scattered in memory, so those of later blocks are prefetched.
     for (std::size_t i = first + AHEAD; i < std::min(first + AHEAD + LANES, count); i++) {
       __builtin_prefetch(given.corners.data() + 3 * static_cast<std::size_t>(each * order[i]));
     }
@@ -162,7 +162,7 @@ Surface make_surface(const GivenSurface& given) {
     }
     around.push_back(around_points(corners));
   }
-  // Nodes are full: their places to spare are far away, and so are the leaves below.
+  // Nodes are full: their unused slots, and the leaves below, have coordinates far away.
   const std::size_t leaves = (around.size() + LANES - 1) / LANES * LANES;
   if (given.triangles) {
     surface.triangles.resize(leaves, {far, none, none, none});

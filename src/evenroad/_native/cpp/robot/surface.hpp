@@ -1,4 +1,4 @@
-// A surface, points or triangles, as checks read it: a grid of distances and a tree of sixteens.
+// A surface of points or triangles in the form of checks: a grid of distances and a tree of sixteens.
 #pragma once
 
 #include <cstdint>
@@ -18,24 +18,24 @@ struct PointLeaf {
   Vec3x16 points;
 };
 
-/// Sixteen triangles: a corner, the ways to the other two, and their unit normals, or 0 where they have none.
+/// Sixteen triangles: a corner, the vectors to the other two, and unit normals, or 0 if they have none.
 struct TriangleLeaf {
   Vec3x16 corner, first, second, normal;
 };
 
 struct Surface {
   DistanceGrid grid;
-  std::vector<std::int8_t> windings;  // how often it winds around the middle of each cell; empty: nothing is inside
-  bool turned = false;            // inside is what it winds around, or else what it winds around an odd number of times
-  float radius = 0;               // by which points, or triangles, are widened
-  std::vector<PointLeaf> points;  // of a cloud
+  std::vector<std::int8_t> windings;    // winding number around the middle of each cell; empty: nothing is inside
+  bool turned = false;                  // inside are points of any winding number, or else of an odd one
+  float radius = 0;                     // width of points or triangles
+  std::vector<PointLeaf> points;        // of a cloud
   std::vector<TriangleLeaf> triangles;  // of a mesh
   std::vector<std::uint16_t> firsts;    // of a mesh: which triangles of a leaf are the first of their part
   std::vector<std::uint16_t> closed;    // of a mesh: which ones are of closed parts
   BoxTree tree;                         // over the leaves
 };
 
-/// A surface as Python gives it.
+/// A surface in the form of Python.
 struct GivenSurface {
   std::span<const double> corners;  // (n, 1, 3) points or (n, 3, 3) triangles, a grid's cell farther than the reach
   bool triangles;
@@ -50,17 +50,17 @@ struct GivenSurface {
 /// Return a surface; std::invalid_argument if sizes do not fit.
 Surface make_surface(const GivenSurface& given);
 
-/// A cloud as Python gives it: points, and their pose.
+/// A cloud in the form of Python: points, and their pose.
 struct GivenCloud {
   std::span<const double> points, rotation, xyz;  // (n, 3) [m]; (3, 3); (3,) [m]
-  double radius, clearance;                       // of a ball about each, and by which that is larger [m]
-  double reach;  // of the robot with that clearance: no more than this is looked at [m]
+  double radius, clearance;                       // of a ball about each point, and its enlargement [m]
+  double reach;                                   // of the robot with that clearance; farther points are ignored [m]
 };
 
-/// Return as a surface what of a cloud can be reached, or nothing.
+/// Return the reachable part of a cloud as a surface, or nothing.
 std::optional<Surface> make_cloud(const GivenCloud& given);
 
-/// Return a grid around surfaces, without leaves: a byte counts how far all of a cell is from every one.
+/// Return a grid around surfaces, without leaves: a byte is the distance of a whole cell from all of them.
 Surface make_surface_around(std::span<const std::shared_ptr<const Surface>> surfaces);
 
 }  // namespace evenroad::robot

@@ -1,4 +1,4 @@
-// A grid around all surfaces of a scene: it clears most capsules of all of them at once.
+// A grid around all surfaces of a scene.  It separates most capsules from all of them at once.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,11 +9,11 @@ namespace evenroad::robot {
 
 namespace {
 
-constexpr double CELLS_AROUND = 100'000;  // of a grid around surfaces, about
-constexpr double LESS = 1.0 - 1e-5;       // what distances are multiplied by, for what single precision loses
-constexpr float NEVER = 1e9F;             // far more than any distance: the grid never says that something touches
+constexpr double CELLS_AROUND = 100'000;  // approximate number of cells of a grid around surfaces
+constexpr double LESS = 1.0 - 1e-5;       // factor of distances, for the error of single precision
+constexpr float NEVER = 1e9F;             // larger than any distance, so that the grid never proves a contact
 
-/// Where a surface's grid has the middles of cells along one axis: the cell, and the square of what is outside of it.
+/// The middles of cells along one axis in a surface's grid: the cell, and the squared distance from the grid.
 struct Along {
   std::vector<int> cells;
   std::vector<float> outside;

@@ -11,17 +11,18 @@ namespace evenroad::robot {
 
 namespace {
 
-/// A capsule that at most this many spheres cover is not looked up in the grid as a whole: it would cost as much.
+/// Number of covering spheres up to which a capsule is not looked up as a whole, because that costs as much.
 constexpr int FEW_SPHERES = 2;
 
-/// A capsule in sixteen lanes: how long it is, and how far its surface and that of its spheres are from its segment.
+/// A capsule in sixteen lanes: its length, and the distances of its surface and of its spheres' surface from its
+/// segment.
 struct Asked {
   const PlacedCapsule& capsule;
   std::span<const float> samples;
   float half, covering, slack;  // spheres are larger than the capsule by the slack
 };
 
-/// What is sought in a grid: lanes in which a capsule is near, or also those in which it touches for sure.
+/// The goal of a lookup: lanes in which a capsule is near, or also those in which it certainly touches.
 enum class Sought : std::uint8_t { NEAR, SURE };
 
 /// Look up a long capsule in a grid as a whole first, then the spheres that cover it, until all open lanes are
@@ -73,11 +74,11 @@ bool touches(const Surface& surface, const CapsuleAt& capsule) {
   return false;
 }
 
-/// Return whether the true shape of a body touches what of a surface is near a capsule, or has it inside.
+/// Return whether the true shape of a body touches or contains the part of a surface near a capsule.
 bool shape_touches(const ShapeNear& of, const Surface& surface, const CapsuleAt& capsule, int lane) {
   ShapeAt shape(of.robot.shapes, of.body.shape, of.placed.frames[of.body.frame], lane, surface.radius, of.near);
   const bool is_mesh = !surface.triangles.empty();
-  // A point is a triangle without size, and hangs together with no other one.
+  // A point is a triangle without size, and not connected to others.
   TriangleLeaf points{};
   Walk walk(surface.tree);
   const auto query = [&](const BoxNode& node) { return near_nodes(node, capsule) & shape.near(node); };
@@ -92,7 +93,7 @@ bool shape_touches(const ShapeNear& of, const Surface& surface, const CapsuleAt&
   return false;
 }
 
-/// Return the first of some lanes in which a capsule touches a surface or is inside; all of them where all are wanted.
+/// Return the first of some lanes in which a capsule touches a surface or is inside, or all if all are wanted.
 Mask touching_lanes(const Surface& surface, const Asked& of, float one_by_squared, Mask near, Wanted wanted) {
   const float reach = of.covering - of.slack + surface.radius;
   const bool alone = (near & (near - 1)) == 0;
@@ -111,14 +112,14 @@ Mask touching_lanes(const Surface& surface, const Asked& of, float one_by_square
   return meeting;
 }
 
-/// Return in which lanes the grid tells that a ball inside of a true shape touches for sure.
+/// Return the lanes in which the grid proves a contact of a ball inside a true shape.
 Mask inside_touching(const ShapeNear& of, const Surface& surface, Mask asked) {
   const PlacedFrame& frame = of.placed.frames[of.body.frame];
   Mask touching = 0;
   for (int i = of.body.inside.first; i < of.body.inside.end && (asked & ~touching) != 0; i++) {
     const auto& [centre, radius] = of.robot.inside[i];
     const float reach = radius + of.near + surface.radius;
-    // Of smaller ones no cell tells.
+    // The cells prove no contact of smaller balls.
     if (reach <= surface.grid.excess) continue;
     const Vec3x16 here = frame.origin + frame.turned(spread(centre));
     touching |= asked & query(surface.grid, here, 0, reach).sure;
@@ -157,7 +158,7 @@ Mask meeting_surfaces(const Robot& robot, const Lengths& lengths, const Scene& s
   const std::span<const float> samples = robot.samples;
   const bool many = scene.surfaces.size() > 1;
   Mask meeting = 0;
-  // From the outermost capsules inwards: those touch most often.
+  // From the outermost capsules inwards, because those touch most often.
   for (int i = static_cast<int>(robot.capsules.size()) - 1; i >= robot.fixed_capsules(); i--) {
     if (scene.surfaces_tested[i] == 0) continue;
     const Capsule& capsule = robot.capsules[i];
@@ -199,7 +200,7 @@ Contact fixed_surface_contact(const Robot& robot, const Scene& scene, const Plac
       if (!each.tested[i]) continue;
       const Capsule& capsule = robot.capsules[i];
       const Vec3 centre = lane_of(placed.capsules[i].centre, 0);
-      // As it is: what does not move is placed without rounding, and may stand on what it touches nearly.
+      // Not enlarged: a fixed capsule is placed without rounding, and may stand on a surface that it nearly touches.
       const auto radius = static_cast<float>(robot.lengths.capsules[i] - robot.padding - capsule.slack);
       const CapsuleAt at{centre, lane_of(placed.capsules[i].half, 0), capsule.one_by_squared, radius + surface.radius};
       const Body& body = robot.bodies[capsule.body];

@@ -1,4 +1,4 @@
-// Which cells triangles pass through, how often they wind around the others, and a distance transform.
+// The cells that triangles pass through, winding numbers around the others, and a distance transform.
 #include "robot/surface_grid.hpp"
 
 #include <algorithm>
@@ -12,12 +12,13 @@ namespace evenroad::robot {
 namespace {
 
 constexpr double LEAST_CELL = 4e-3;  // [m]
-constexpr double SURE = 1e-7;        // what is so near to a cell, in sides of one, is in it, too: more than rounding
+constexpr double SURE =
+    1e-7;  // points this near to a cell, in sides of one, count as in it, too; more than rounding errors
 constexpr int MOST_WINDINGS = 100;
-constexpr int FARTHEST = 64;  // distances beyond this many cells count as one
+constexpr int FARTHEST = 64;  // distances beyond this many cells are clipped
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
-/// A convex polygon: a triangle that is cut off four times at most.
+/// A convex polygon: a triangle that is clipped up to four times.
 struct Polygon {
   double corners[16][3];
   int count = 0;
@@ -28,7 +29,7 @@ struct Polygon {
   }
 };
 
-/// Return what is left of a polygon above a bound, or below it where `side` is -1.
+/// Return the part of a polygon above a bound, or below it if `side` is -1.
 Polygon part_of(const Polygon& from, int axis, double bound, double side) {
   Polygon left;
   for (int i = 0; i < from.count; i++) {
@@ -43,12 +44,13 @@ Polygon part_of(const Polygon& from, int axis, double bound, double side) {
   return left;
 }
 
-/// Return what of a polygon is in a row of cells across an axis.
+/// Return the part of a polygon in a slab of cells across an axis.
 Polygon within(const Polygon& from, int axis, int row) {
   return part_of(part_of(from, axis, row - SURE, 1.0), axis, row + 1 + SURE, -1.0);
 }
 
-/// Return the first and last of `count` cells that a range along an axis is in, the first not above the second if any.
+/// Return the first and last of `count` cells that a range along an axis overlaps; the first is above the second if
+/// there are none.
 std::pair<int, int> cells_of(double least, double most, int count) {
   const double end = count;
   return {std::max(static_cast<int>(std::floor(std::clamp(least, 0.0, 1e9) - SURE)), 0),
@@ -64,7 +66,7 @@ void mark_triangle(const GridLayout& grid, const Polygon& triangle, std::vector<
     std::tie(first[axis], last[axis]) = cells_of(least, most, grid.cells[axis]);
     if (last[axis] - first[axis] > last[longest] - first[longest]) longest = axis;
   }
-  // Slabs, and in these columns along the longest axis: so they are few.
+  // Slabs, and columns within them along the longest axis, so that there are few.
   const int one = (longest + 1) % 3, other = (longest + 2) % 3;
   int cell[3];
   for (cell[one] = first[one]; cell[one] <= last[one]; cell[one]++) {
@@ -82,9 +84,10 @@ void mark_triangle(const GridLayout& grid, const Polygon& triangle, std::vector<
   }
 }
 
-/// Return twice the area, with its sign, of a triangle in y and z between a side and a place; 0 counts as tiny.
+/// Return twice the signed area of a triangle in y and z between a side and a point; 0 counts as tiny.
 ///
-/// A side that two triangles share is computed from the same end for both: what one leaves, the other takes.
+/// A side that two triangles share is computed from the same endpoint for both, so that exactly one of them gets each
+/// point.
 double area_beside(const double* a, const double* b, double y, double z) {
   const bool exchanged = a[1] != b[1] ? a[1] > b[1] : a[2] > b[2];
   if (exchanged) std::swap(a, b);
@@ -93,7 +96,7 @@ double area_beside(const double* a, const double* b, double y, double z) {
   return exchanged ? -area : area;
 }
 
-/// Return the largest of numbers >= 0; unlike std::max_element this becomes vectors.
+/// Return the largest of numbers >= 0; unlike std::max_element it can be vectorised.
 std::int32_t most_of(std::span<const std::int32_t> numbers) {
   std::int32_t most = 0;
   for (const std::int32_t number : numbers) most = std::max(most, number);
@@ -178,7 +181,7 @@ void mark_boxes(const GridLayout& grid, std::span<const std::array<double, 6>> b
 
 std::vector<std::int8_t> count_windings(const GridLayout& grid, std::span<const double> triangles, bool turned) {
   const auto [nx, ny, nz] = grid.cells;
-  // Where lines along x through the middles of cells cross.
+  // The crossings of lines along x through the middles of cells.
   std::vector<std::int32_t> crossings(static_cast<std::size_t>(ny) * nz * (nx + 1));
   const auto cells = [&](double at, int axis) {
     return std::min(std::max((at - grid.low[axis]) / grid.cell - 0.5, -1.0), 1e9);
@@ -223,9 +226,9 @@ int winding_at(const double (&point)[3], std::span<const double> triangles, bool
   return count_windings(around, triangles, turned)[0];
 }
 
-/// Between cells d apart along an axis there are d - 1: so distances, axis by axis, from cells that are marked or next
-/// to one (after P. Felzenszwalb and D. Huttenlocher, Distance Transforms of Sampled Functions, 2012, but each line is
-/// searched up to the farthest that counts, many lines at once).
+/// Cells at a distance d along an axis have d - 1 cells between them.  So distances, axis by axis, are from cells that
+/// are marked or next to a marked one (after P. Felzenszwalb and D. Huttenlocher, Distance Transforms of Sampled
+/// Functions, 2012; but each line is searched up to the largest distance, many lines at once).
 std::vector<std::uint8_t> distances_to(const GridLayout& grid, std::span<const std::uint8_t> marked) {
   const auto [nx, ny, nz] = grid.cells;
   std::vector<std::int32_t> squared(grid.count(), FARTHEST * FARTHEST), least(grid.count());
@@ -267,7 +270,7 @@ std::vector<std::uint8_t> distances_to(const GridLayout& grid, std::span<const s
 }
 
 DistanceGrid make_grid(const GridLayout& layout, double excess, std::vector<std::uint8_t> distances) {
-  // A place on the upper side is in the last cell, not beyond it.
+  // A point on the upper side is in the last cell, not beyond it.
   const double within = layout.cell * (1.0 - 1e-5);
   const auto single = [](double x, double y, double z) {
     return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};

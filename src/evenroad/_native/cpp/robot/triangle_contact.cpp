@@ -1,4 +1,4 @@
-// Sixteen triangles at once against a segment, and whether a place is inside of a closed mesh.
+// Tests of sixteen triangles at once against a segment, and whether a point is inside a closed mesh.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace evenroad::robot {
 
 namespace {
 
-/// So near to a triangle's plane or side it is left open on which side of it a place is, in parts of a metre [m].
+/// Distance from a triangle's plane or side below which the side of a point is uncertain, per metre [m].
 constexpr float UNSURE = 2e-6F;
 
 EVENROAD_INLINE Floats16 part(Floats16 share) { return clamp(share, Floats16{}, spread(1)); }
@@ -29,15 +29,15 @@ EVENROAD_INLINE Mask near_side(Vec3x16 start, Vec3x16 direction, Vec3x16 along, 
   return below_zero(dot(side, side) - capsule.reach * capsule.reach);
 }
 
-/// Return for which triangles a place, seen from their corner, is not above them, by more than a slack [m^2].
+/// Return the triangles above which a point, relative to their corner, does not lie, by more than a slack [m^2].
 EVENROAD_INLINE Mask outside(const TriangleLeaf& leaf, Vec3x16 third, Vec3x16 here, float slack) {
   const Floats16 a = dot(cross(leaf.first, here), leaf.normal), b = dot(cross(here, leaf.second), leaf.normal);
   const Floats16 c = dot(cross(third, here - leaf.first), leaf.normal);
   return below_zero(min(min(a, b), c) + slack);
 }
 
-/// Return how many of some triangles of a leaf a segment crosses along their normals, less those against them, or
-/// nothing where that is uncertain; `half` is half of the segment.
+/// Return the number of triangles of a leaf that a segment crosses along their normals, less the number against them,
+/// or nothing if that is uncertain; `half` is half of the segment.
 std::optional<int> crossings(const TriangleLeaf& leaf, Mask some, Vec3 begin, Vec3 half) {
   const Vec3x16 corner = leaf.corner - spread(begin), third = leaf.second - leaf.first, along = spread(half);
   const Floats16 before = -dot(leaf.normal, corner), slope = dot(leaf.normal, along);
@@ -56,8 +56,8 @@ std::optional<int> crossings(const TriangleLeaf& leaf, Mask some, Vec3 begin, Ve
 
 }  // namespace
 
-// Nearest are the segment and a side, or the place of the segment that is nearest to the plane, where it is above the
-// triangle: from any other above it, one comes nearer on the way there, or to a side.
+// The distance is that of the segment from a side, or of its point nearest to the plane, if this lies above the
+// triangle.  Any other point above the triangle can move nearer, to that point or to a side.
 Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule) {
   const Vec3x16 corner = leaf.corner - spread(capsule.centre), third = leaf.second - leaf.first;
   const Vec3x16 along = spread(capsule.half);
@@ -72,9 +72,9 @@ Mask near_triangles(const TriangleLeaf& leaf, const CapsuleAt& capsule) {
   return near | (above & ~outside(leaf, third, here, 0));
 }
 
-// How often the mesh winds around a place is known for the middle of its cell, and changes where the way there crosses
-// a triangle of a closed part.  Outside of the grid nothing is inside.  Where a crossing is too near to a side to tell,
-// it counts as inside.
+// The winding number of the mesh around a point is known for the middle of its cell.  It changes if the line from there
+// crosses a triangle of a closed part.  Outside of the grid nothing is inside.  If a crossing is too near to a side to
+// decide, the point counts as inside.
 bool is_inside(const Surface& mesh, Vec3 point) {
   const DistanceGrid& grid = mesh.grid;
   const float u = point.x - grid.low.x, v = point.y - grid.low.y, w = point.z - grid.low.z;

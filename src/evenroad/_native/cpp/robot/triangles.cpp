@@ -1,4 +1,4 @@
-// Triangles are halved where they are long.
+// Long triangles are halved.
 #include "robot/triangles.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Triangles before they are a surface: those that a robot can reach.
+// The triangles that a robot can reach, of which a surface is made.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ struct Pieces {
   std::vector<std::uint8_t> first;
 };
 
-/// Return the pieces of triangles, nine numbers each, that come within reach along each axis: they are halved until no
-/// side is longer than `longest`.
+/// Return the pieces of triangles, nine numbers each, within reach along each axis; triangles are halved until no side
+/// is longer than `longest`.
 Pieces pieces_within(std::span<const double> triangles, std::span<const bool> first, double reach, double longest);
 
 }  // namespace evenroad::robot
