@@ -1,4 +1,4 @@
-// What the boundary says of an argument that it does not take.
+// The errors of arguments that the boundary refuses.
 #include "bind/arrays.hpp"
 
 #include <cmath>

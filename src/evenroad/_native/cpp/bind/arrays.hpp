@@ -1,5 +1,4 @@
-// Arrays at the boundary: what Python gives is checked and seen as spans, what it gets is an array that owns its
-// memory.
+// Arrays at the boundary: arguments from Python are checked and become spans; results are arrays that own their memory.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -24,7 +23,7 @@ namespace evenroad::bind {
 
 namespace nb = nanobind;
 
-/// Return what NumPy calls a type.
+/// Return NumPy's name of a type.
 template <class T>
 constexpr const char* type_name() {
   using Plain = std::remove_const_t<T>;
@@ -39,7 +38,7 @@ constexpr const char* type_name() {
   return "another type";
 }
 
-/// Refuse an argument: `wanted` in words, and what was given instead.
+/// Refuse an argument: `wanted` in words, and the given value.
 [[noreturn]] void refuse(const char* name, const std::string& wanted, nb::handle given);
 
 /// Throw InvalidValue with this text unless the condition holds.
@@ -47,17 +46,17 @@ inline void require(bool holds, const std::string& text) {
   if (!holds) throw InvalidValue(text);
 }
 
-/// Refuse numbers unless all of them lie in a range, and so are numbers.
+/// Refuse numbers unless all of them lie in a range; NaN does not.
 void require_within(std::span<const double> numbers, double low, double high, const char* name);
 
-/// Refuse numbers that are infinite or none.
+/// Refuse infinite numbers and NaN.
 void require_finite(std::span<const double> numbers, const char* name);
 
 /// Refuse numbers of something unless all are from 0 to below `count`.
 template <class T>
 void require_below(std::span<const T> numbers, std::size_t count, const char* name) {
   using Unsigned = std::make_unsigned_t<T>;
-  // Negative ones are large then.
+  // Negative numbers become large ones.
   Unsigned largest = 0;
   for (const T number : numbers) largest = std::max(largest, static_cast<Unsigned>(number));
   if (numbers.empty() || largest < count) return;
@@ -68,10 +67,10 @@ inline void require_below(std::int64_t number, std::size_t count, const char* na
   require_below(std::span<const std::int64_t>(&number, 1), count, name);
 }
 
-/// Refuse a number of motions, say, that no computer will have made.
+/// Refuse a count that no computer could reach, such as one of motions.
 inline void require_budget(std::int64_t most, const char* name) { require_below(most, std::size_t{1} << 53, name); }
 
-/// Return what a tuple or list holds; `name` is what an error calls it.
+/// Return the items of a tuple or list; `name` is its name in errors.
 template <class T>
 T value_of(nb::handle given, const char* name) {
   T value{};
@@ -79,16 +78,16 @@ T value_of(nb::handle given, const char* name) {
   return value;
 }
 
-/// Whether an array of doubles may hold what is infinite or no number.
+/// Whether an array of doubles may have infinite entries or NaN.
 enum class Entries : std::uint8_t { FINITE, ANY };
 
 /// A C-contiguous array of T with `Axes` axes, kept alive as long as this is.
 ///
-/// T is const where the array is only read: one that is written to must be writable.
+/// T is const if the array is only read; an array to write to must be writable.
 template <class T, int Axes>
 class Array {
  public:
-  /// Check an argument; `name` is what the error calls it.
+  /// Check an argument; `name` is its name in errors.
   Array(nb::handle given, const char* name, Entries entries = Entries::FINITE) : name_(name) {
     if (!nb::try_cast(given, array_, false)) {
       const std::string writable = std::is_const_v<T> ? "" : "writable, ";
@@ -145,13 +144,13 @@ class Array {
 using Floats = Array<const double, 1>;
 using FloatRows = Array<const double, 2>;
 
-/// Check an argument of rows, each of as many numbers as there are columns.
+/// Check an argument of rows with this number of columns.
 inline FloatRows float_rows(nb::handle given, const char* name, std::size_t columns) {
   const FloatRows rows(given, name);
   return rows.of_shape({rows.shape(0), columns});
 }
 
-/// Give memory to Python as a NumPy array of this shape.
+/// Move memory to Python as a NumPy array of this shape.
 template <class T>
 nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
@@ -161,12 +160,12 @@ nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> 
   return nb::cast(nb::ndarray<nb::numpy, T>(data, shape, owner));
 }
 
-/// Give bytes that are 0 or 1 to Python as an array of bools.
+/// Move bytes of 0 or 1 to Python as an array of bools.
 inline nb::object as_bools(std::vector<std::uint8_t>&& values, std::initializer_list<std::size_t> shape) {
   return as_numpy(std::move(values), shape).attr("view")("bool");
 }
 
-/// Give numbers as one row, or as rows of that many.
+/// Move numbers to Python as one row, or as rows of this length.
 template <class T>
 nb::object as_row(std::vector<T>&& values) {
   const std::size_t count = values.size();
@@ -186,7 +185,7 @@ nb::object as_rows(OwnMatrix<T>&& matrix) {
 template <class Struct, class Values>
 Struct owner_of(Values Struct::* field);
 
-/// Return a field of a struct that Python has, a vector or a matrix, as an array that looks into it; bytes are flags.
+/// Return a field of a struct that Python owns, a vector or a matrix, as an array that refers to it; bytes are flags.
 template <auto FIELD>
 nb::object array_of(nb::handle self) {
   auto& field = nb::cast<decltype(owner_of(FIELD))&>(self).*FIELD;
@@ -202,7 +201,7 @@ nb::object array_of(nb::handle self) {
   }
 }
 
-/// Call a function while other threads of Python run.
+/// Call a function without the GIL, while other threads of Python run.
 template <class Function>
 auto without_gil(Function&& function) {
   nb::gil_scoped_release released;

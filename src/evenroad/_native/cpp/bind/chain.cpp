@@ -1,4 +1,4 @@
-// evenroad._native.robot.Chain: the joints that carry a link, where they bring it, and configurations for its poses.
+// evenroad._native.robot.Chain: the joints that carry a link, its poses, and configurations for its poses.
 #include <algorithm>
 
 #include "bind/arrays.hpp"
@@ -39,7 +39,8 @@ void make_chain(Chain* self, nb::handle coordinates, nb::handle slides, nb::hand
   new (self) Chain(std::move(chain));
 }
 
-/// A task is its pose, an axis, a direction, whether the place counts, what counts of the turn, and the tolerances.
+/// A task is its pose, an axis, a direction, whether the position counts, the constrained part of the rotation, and the
+/// tolerances.
 robot::PoseTask task_of(std::span<const double> row) {
   const double* numbers = row.data();
   const double turn = numbers[POSE + 7];
@@ -84,7 +85,7 @@ nb::object tip_poses(const Chain& chain, nb::handle q) {
   return as_numpy(std::move(poses), {given.shape(0), POSE});
 }
 
-/// Return how the tip moves and turns with each coordinate, (n, 6, dim).
+/// Return the Jacobians of the tip, (n, 6, dim).
 nb::object derivatives(const Chain& chain, nb::handle q) {
   const FloatRows given = float_rows(q, "q", dim(chain));
   const std::size_t size = 6 * dim(chain);
@@ -99,7 +100,7 @@ nb::object derivatives(const Chain& chain, nb::handle q) {
   return as_numpy(std::move(written), {given.shape(0), 6, dim(chain)});
 }
 
-/// Return configurations moved, and what each lacks, squared.
+/// Return the moved configurations, and the squared error of each.
 nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle limits, int steps, std::size_t enough) {
   const Array<const double, 2> given(q, "q"), bounds(limits, "limits", Entries::ANY);
   const std::size_t rows = given.shape(0);
@@ -112,7 +113,7 @@ nb::tuple reach(const Chain& chain, nb::handle q, nb::handle task, nb::handle li
   return nb::make_tuple(as_numpy(std::move(moved), {rows, dim(chain)}), as_numpy(std::move(missing), {rows}));
 }
 
-/// Where solutions begin, with the arrays that it reads.
+/// The starts of solutions, with the arrays that they read.
 struct Beginnings {
   Array<const double, 1> start;
   Array<const double, 2> known, tips;
@@ -126,7 +127,7 @@ struct Beginnings {
   }
 };
 
-/// What is one posture, with the arrays that it reads.
+/// The definition of a posture, with the arrays that it reads.
 struct Postures {
   Array<const bool, 1> turns;
   Array<const double, 2> bounds;
@@ -157,7 +158,7 @@ robot::Solutions reach_all(const Chain& chain, const Beginnings& beginnings, nb:
       [&] { return robot::reach_all(chain, wanted, within, from, different, static_cast<int>(steps), enough); });
 }
 
-/// Return the configurations, (n, dim), with which the tip gets through poses, as far as it does.
+/// Return the configurations, (n, dim), with which the tip follows poses, up to the last that it reaches.
 nb::object follow(const Chain& chain, nb::handle q, nb::handle towards, nb::handle task, nb::handle poses,
                   nb::handle limits, int steps, double longest) {
   const Array<const double, 1> begin(q, "q"), end(towards, "towards");

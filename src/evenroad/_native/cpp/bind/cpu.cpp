@@ -1,7 +1,7 @@
-// Which builds of the kernel this processor runs, from the oldest to the newest instruction set.
+// The builds of the kernel that this processor runs, from the oldest to the newest instruction set.
 //
-// clang of the wheel `ziglang` answers __builtin_cpu_supports with "no" whatever the processor, so the processor's
-// own answers (cpuid) are read here; what the system saves of the registers (xgetbv) decides, too.
+// With clang of the wheel `ziglang`, __builtin_cpu_supports returns "no" on every processor, so cpuid is read here.
+// The registers that the system saves (xgetbv) decide, too.
 #include <Python.h>
 
 #include <array>

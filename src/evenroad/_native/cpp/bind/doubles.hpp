@@ -1,4 +1,4 @@
-// Arrays as callers give them, seen without a copy where they are what compiled code reads; others are read in Python.
+// Arguments that compiled code can read without a copy; Python reads all others.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -9,7 +9,7 @@
 
 namespace evenroad::bind {
 
-/// Doubles of an array as a caller gives it, seen without a copy: nothing where it is another kind of thing.
+/// The doubles of a caller's array without a copy; nothing if it is another kind of object.
 class Doubles {
  public:
   explicit Doubles(nb::handle given) {
@@ -48,12 +48,12 @@ class Doubles {
   Py_buffer view_{};
 };
 
-/// Return what NumPy calls by a name, kept for good: at the end of a process no Python could take it back.
+/// Return NumPy's object of a name.  It is never released, because at the end of a process Python no longer exists.
 inline nanobind::handle numpy(const char* name) {
   return *new nanobind::object(nanobind::module_::import_("numpy").attr(name));
 }
 
-/// Return a new NumPy array of a shape, of doubles or of another kind; it is filled in place.
+/// Return a new NumPy array of a shape, of doubles or of another type, to be filled in place.
 inline nanobind::object empty_array(nanobind::handle shape, nanobind::handle kind = {}) {
   static const nanobind::handle empty = numpy("empty");
   return kind.is_valid() ? empty(shape, kind) : empty(shape);

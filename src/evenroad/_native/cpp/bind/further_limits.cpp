@@ -1,4 +1,4 @@
-// evenroad._native.trajectory.TorqueLimits and TipLimits: what a trajectory keeps beside velocities and accelerations.
+// evenroad._native.trajectory.TorqueLimits and TipLimits: limits of a trajectory beside velocities and accelerations.
 #include "trajectory/further_limits.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using trajectory::TorqueLimits;
 
 constexpr std::size_t LINK = POSE + 2 + 4 + 9, MOST_DIM = 65536;
 
-/// Take the coordinates of the joints of links, their parents, which of them slide, and of each a row: its pose,
+/// Read the coordinates of the joints of links, their parents, which of them slide, and a row for each: its pose,
 /// multiplier, offset, mass, centre and inertia.
 void make_links(MovingLinks* self, std::size_t dim, nb::handle of_joints, nb::handle before, nb::handle sliding,
                 nb::handle numbers) {

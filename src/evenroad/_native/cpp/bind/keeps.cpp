@@ -25,11 +25,11 @@ using robot::Walking;
 constexpr Words<KeepKind::JOINTS> KINDS{"kind", {"linear", "box", "circle", "together", "joints"}};
 
 constexpr int MOST_STEPS = 1000, MOST_PIECES = 1000;
-/// A walk may be so long in each coordinate [rad or m].
+/// Largest length of a walk in each coordinate [rad or m].
 constexpr double LONGEST_MOTION = 1e4;
 constexpr std::size_t LINEAR = POSE + 1, CIRCLE = 13 + POSE;
 
-/// Return how long a residual is that is made of that many numbers; refuse numbers that make none.
+/// Return the length of a residual with this number of parameters; refuse a wrong number.
 std::size_t rows_of(KeepKind kind, std::size_t count, std::size_t dim) {
   switch (kind) {
     case KeepKind::LINEAR:
@@ -115,7 +115,7 @@ void make_walking(Walking* self, nb::handle scale, double step, double jump, con
   new (self) Walking{{scales.span().begin(), scales.span().end()}, step, jump, projecting};
 }
 
-/// Return configurations moved onto the constraints, and which got there.
+/// Return configurations moved onto the constraints, and which succeeded.
 nb::tuple project(const Keeps& keeps, nb::handle q, const Projecting& how) {
   const FloatRows given = float_rows(q, "q", keeps.dim());
   const std::size_t rows = given.shape(0);
@@ -124,12 +124,12 @@ nb::tuple project(const Keeps& keeps, nb::handle q, const Projecting& how) {
   return nb::make_tuple(as_numpy(std::move(moved), {rows, keeps.dim()}), as_bools(std::move(good), {rows}));
 }
 
-/// The states of motions, one motion after the other, and how many each has: none where it fails.
+/// The states of motions in sequence, and the number of each: 0 if it fails.
 struct Walks {
   std::vector<double> rows;
   std::vector<std::int64_t> counts;
 
-  /// Let a function append the states of one more motion, and take them back where it returns false.
+  /// Let a function append the states of one more motion; remove them if it returns false.
   template <class Append>
   void add(std::size_t dim, const Append& append) {
     const std::size_t before = rows.size();
@@ -147,7 +147,7 @@ void require_of_dim(const Walking& how, const Keeps& keeps) {
   require(how.scale.size() == keeps.dim(), "scale must have the coordinates of the limits");
 }
 
-/// Return the states of walks from configurations by ways, (n, dim) each, and how many each has.
+/// Return the states of walks from configurations along directions, (n, dim) each, and the number of each.
 nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle directions, const Walking& how) {
   const Array<const double, 2> begins(from, "from"), moved(directions, "directions");
   begins.of_shape({begins.shape(0), keeps.dim()});
@@ -165,7 +165,7 @@ nb::tuple walk(const Keeps& keeps, nb::handle from, nb::handle directions, const
   return states.handed_out(keeps.dim());
 }
 
-/// Return the states of paths with that many pieces for one of each motion, and how many each path has.
+/// Return the states of paths with each motion divided into that many pieces, and the number of each path.
 nb::tuple refine(const Keeps& keeps, nb::handle paths, nb::handle counts, int pieces, const Walking& how) {
   const FloatRows given = float_rows(paths, "paths", keeps.dim());
   const Array<const std::int64_t, 1> sizes(counts, "counts");

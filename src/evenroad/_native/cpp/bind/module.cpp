@@ -10,8 +10,8 @@ namespace nb = nanobind;
 
 namespace {
 
-/// Raise evenroad.errors.InvalidValue for what the bindings, or the tables of a kernel, refuse, and BudgetSpent where
-/// the time is over.
+/// Raise evenroad.errors.InvalidValue for values that the bindings or the tables of a kernel refuse, and BudgetSpent
+/// when the time is over.
 void translate(const std::exception_ptr& thrown, void*) {
   try {
     std::rethrow_exception(thrown);

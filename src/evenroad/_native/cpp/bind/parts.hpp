@@ -1,4 +1,4 @@
-// What the module is made of: a submodule for each part of the package, each in a file of its own.
+// The parts of the module: a submodule for each part of the package, each in its own file.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -8,7 +8,7 @@
 
 namespace evenroad::bind {
 
-/// No length is larger [m].
+/// Largest length [m].
 constexpr double FARTHEST = 1e9;
 
 /// The numbers of a pose: its rotation, row by row, and its origin.

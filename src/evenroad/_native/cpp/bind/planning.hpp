@@ -1,4 +1,4 @@
-// What the bindings of planners share.
+// Common parts of the bindings of planners.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct Points {
     is_in_unit_cube = std::ranges::all_of(rows.span(), [](double entry) { return entry >= 0.0; });
   }
 
-  /// Return them; refuse others than those of this many columns, in the unit cube where they have to be.
+  /// Return them; refuse another number of columns, or points outside the unit cube if they must be in it.
   Matrix<const double> of(std::size_t columns, bool of_unit_cube, const char* name) const {
     require(rows.shape(1) == columns && (is_in_unit_cube || !of_unit_cube),
             std::string(name) + " must be points of " + std::to_string(columns) + " dimensions" +
@@ -45,10 +45,10 @@ struct Drivers {
   }
 };
 
-/// What a search ended with.
+/// The outcome of a search.
 constexpr Words<planning::Growth::SOLVED> GROWTHS{"ended", {"paused", "spent", "not free", "solved"}};
 
-/// Add queries of an arm, from its ends to a smoothed path.
+/// Add queries of an arm, from terminals to a smoothed path.
 void add_queries(nb::module_& part);
 
 }  // namespace evenroad::bind

@@ -49,7 +49,7 @@ double star_discrepancy(nb::handle columns) {
   return without_gil([&] { return points::star_discrepancy(at.matrix()); });
 }
 
-/// So many coordinates are not examined in a year.
+/// A number of coordinates that would take more than a year to examine.
 constexpr double MOST_WORK = 1e15;
 
 Dispersion bound_dispersion(nb::handle coordinates, nb::handle periods, nb::handle lengths, double lower, double share,

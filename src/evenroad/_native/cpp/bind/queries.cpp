@@ -1,4 +1,4 @@
-// Queries of an arm, from their ends to smoothed paths: one, with all of its numbers, and many, as columns.
+// Queries of an arm, from terminals to smoothed paths: one, with all of its numbers, and many, as columns.
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string_view.h>
 
@@ -61,7 +61,7 @@ struct ManyQueries {
   std::size_t dim() const { return terminals.shape(1); }
 };
 
-/// Return the checks of one or more worlds, of arms of that many joints; there may be none where None may stand.
+/// Return the checks of one or more worlds, of arms with that many joints; there may be none if None is allowed.
 std::vector<std::shared_ptr<Checker>> checkers_from(nb::sequence given, std::size_t joints, bool may_be_none) {
   std::vector<std::shared_ptr<Checker>> checkers;
   for (const nb::handle each : given) {
@@ -92,7 +92,7 @@ void make_many_queries(ManyQueries* made, nb::sequence checkers, nb::sequence ro
   new (made) ManyQueries{rows, numbers, std::move(queries)};
 }
 
-/// Which queries have a path, where the waypoints of each begin, all waypoints, and lengths and seconds.
+/// The queries with a path, the first waypoint of each, all waypoints, and lengths and seconds.
 struct Columns {
   std::vector<std::uint8_t> solved;
   std::vector<std::int64_t> begins{0};

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t MOST_NODES = std::numeric_limits<std::int32_t>::max();
 
-/// Edges, (m, 2), between nodes that there are.
+/// Edges, (m, 2), between existing nodes.
 class Edges {
  public:
   Edges(nb::handle given, std::size_t nodes) : array_(given, "edges") {
@@ -93,7 +93,7 @@ roadmap::Graph with_links(const roadmap::Graph& graph, std::size_t nodes, nb::ha
   return without_gil([&] { return graph.with_links(nodes, given.matrix(), numbered_from); });
 }
 
-/// What a search knows: weights and states for the numbers of all edges.
+/// The data of a search: weights and states by edge number.
 void require_all_edges(const roadmap::Graph& graph, std::size_t given, const char* name) {
   require(given >= graph.numbers(),
           std::string(name) + " must be " + std::to_string(graph.numbers()) + " or more, got " + std::to_string(given));

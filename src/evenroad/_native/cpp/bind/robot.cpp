@@ -16,7 +16,7 @@ namespace evenroad::bind {
 
 namespace {
 
-/// No motion has more states.
+/// Largest number of states of a motion.
 constexpr double MOST_STATES = 1e9;
 
 using robot::Checker;
@@ -180,7 +180,7 @@ nb::object valid(const Checker& checker, nb::handle q) {
   return flags(rows.rows, [&](std::span<bool> free) { robot::configurations_free(checker, rows, free); });
 }
 
-/// Return the same of motions; where the tolerance is > 0 they must be proved free, too.
+/// Return the same for motions; if the tolerance is > 0, they must also be proved free.
 nb::object motion_valid(const Checker& checker, nb::handle a, nb::handle b, double tolerance) {
   const Doubles starts(a), stops(b);
   if (!starts.are_rows_of(checker.dim()) || !stops.are_rows_of(checker.dim()) || starts.axes() != stops.axes()) {
@@ -200,7 +200,7 @@ nb::object motion_valid(const Checker& checker, nb::handle a, nb::handle b, doub
 
 constexpr Words<Contact::With::ITSELF> CONTACTS{"contact", {"nothing", "obstacle", "surface", "itself"}};
 
-/// Return the least distances of configurations, (n, dim), and between what they are.
+/// Return the least distances of configurations, (n, dim), and the bodies that have them.
 nb::tuple distances(const Checker& checker, nb::handle q, double most, bool to_itself) {
   const FloatRows given(q, "q");
   const Matrix<const double> rows = given.of_shape({given.shape(0), checker.dim()}).matrix();

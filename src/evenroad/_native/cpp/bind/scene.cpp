@@ -1,4 +1,5 @@
-// evenroad._native.robot: what is around a robot: surfaces, and scenes that share what stays when they change.
+// evenroad._native.robot: the surroundings of a robot: surfaces, and scenes that share unchanged parts when they
+// change.
 #include "robot/scene.hpp"
 
 #include <nanobind/stl/shared_ptr.h>
@@ -17,10 +18,10 @@ namespace evenroad::bind {
 
 namespace {
 
-/// No obstacle has a larger number.
+/// Largest number of an obstacle.
 constexpr std::size_t MOST_OBSTACLES = 1 << 24;
 
-/// Nor is any of a mesh's triangles.
+/// Largest number of a mesh's triangles.
 constexpr std::size_t MOST_CORNERS = 1 << 28;
 
 using robot::Robot;
@@ -42,7 +43,7 @@ void make_surface(Surface* self, nb::handle corners, double radius, nb::handle s
       {of.span(), of.shape(1) == 3, radius, closed.span(), turned, reach, firsts.span(), bounds.span()}));
 }
 
-/// Look at triangles, (t, 3) rows of vertices, (n, 3).
+/// Find the closed parts of triangles, (t, 3) rows of vertices, (n, 3).
 robot::ClosedParts closed_parts(nb::handle vertices, nb::handle triangles) {
   const FloatRows corners(vertices, "vertices");
   const Array<const std::int64_t, 2> rows(triangles, "triangles");
@@ -52,8 +53,8 @@ robot::ClosedParts closed_parts(nb::handle vertices, nb::handle triangles) {
   return robot::closed_parts({corners.data(), 3 * corners.shape(0)}, rows.span());
 }
 
-/// Return how often closed triangles, (t, 3, 3), wind around a place, (3,); unless they are turned, whether they do so
-/// an odd number of times.
+/// Return the winding number of closed triangles, (t, 3, 3), around a point, (3,); if they are not flipped, only
+/// whether it is odd.
 int winding_at(nb::handle point, nb::handle triangles, bool turned) {
   const Array<const double, 1> at(point, "point");
   const Array<const double, 3> closed(triangles, "triangles");
@@ -63,8 +64,8 @@ int winding_at(nb::handle point, nb::handle triangles, bool turned) {
   return robot::winding_at({at.span()[0], at.span()[1], at.span()[2]}, closed.span(), turned);
 }
 
-/// Return the pieces of triangles, (t, 3, 3), that come within reach, none of a side longer than `longest`: (p, 9); and
-/// which are of those that are the first of their part, (p,).
+/// Return the pieces of triangles, (t, 3, 3), within reach, with no side longer than `longest`, (p, 9); and which
+/// belong to the first triangle of a part, (p,).
 nb::tuple pieces_within(nb::handle triangles, nb::handle first, double reach, double longest) {
   const Array<const double, 3> given(triangles, "triangles");
   const Array<const bool, 1> firsts(first, "first");
@@ -78,7 +79,7 @@ nb::tuple pieces_within(nb::handle triangles, nb::handle first, double reach, do
   return nb::make_tuple(as_rows(std::move(pieces.corners), 9), as_bools(std::move(pieces.first), {count}));
 }
 
-/// Return what of a cloud a robot can reach, or None; points must be finite, and within 1e9 m.
+/// Return the part of a cloud that a robot can reach, or None; points must be finite, and within 1e9 m.
 nb::object surface_of_cloud(nb::handle points, nb::handle rotation, nb::handle xyz, double radius, double clearance,
                             double reach) {
   const FloatRows of(points, "points");
@@ -106,8 +107,8 @@ std::vector<robot::GivenObstacle> obstacles_from(nb::handle obstacles) {
   return given;
 }
 
-/// Return boxes of full extents, centres and quaternions (or None) as obstacles, (n, 17); None where an array is not
-/// one of finite float64, C-contiguous, of its shape, or something is no box.
+/// Return boxes of full extents, centres and quaternions (or None) as obstacles, (n, 17).  Return None if an array is
+/// not finite C-contiguous float64 of its shape, or a row is no box.
 nb::object box_rows(nb::handle size, nb::handle xyz, nb::handle xyzw) {
   const Doubles sizes(size), centres(xyz), turns(xyzw);
   const bool are_turned = !xyzw.is_none();
@@ -133,7 +134,7 @@ void make_surface_obstacle(SurfaceObstacle* self, std::shared_ptr<Surface> surfa
   new (self) SurfaceObstacle{std::move(surface), number, {capsules.span().begin(), capsules.span().end()}};
 }
 
-/// A scene is given its obstacles, (n, 17), its surfaces, and the grid around these, or None.
+/// Make a scene from its obstacles, (n, 17), its surfaces, and the grid around these, or None.
 void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle tested, nb::list surfaces,
                 nb::object around, double clearance) {
   require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");
@@ -150,8 +151,7 @@ void make_scene(Scene* self, const Robot& of, nb::handle obstacles, nb::handle t
   new (self) Scene(std::move(scene));
 }
 
-/// Return a scene in which obstacles of some numbers are gone and others, (n, 17), with numbers, have come; None where
-/// it has to be made anew.
+/// Return a scene without obstacles of some numbers and with others, (n, 17), with numbers; None if it must be rebuilt.
 nb::object changed_scene(const Scene& before, const Robot& of, nb::handle gone, nb::handle obstacles,
                          nb::handle numbers, nb::handle tested, double clearance) {
   require_within({&clearance, 1}, 0.0, FARTHEST, "clearance");

@@ -1,4 +1,4 @@
-// evenroad._native.time_limit: the time that this thread may take.
+// evenroad._native.time_limit: the deadline of this thread.
 #include "common/time_limit.hpp"
 
 #include "bind/parts.hpp"

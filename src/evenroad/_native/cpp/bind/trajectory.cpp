@@ -22,7 +22,7 @@ constexpr std::size_t MOST_SAMPLES = 1 << 20;
 
 constexpr std::size_t MOST_TIMES = 1 << 24;
 
-/// No motion takes longer [s].
+/// Largest duration of a motion [s].
 constexpr double LONGEST = 1e9;
 
 using trajectory::FurtherLimits;
@@ -79,7 +79,7 @@ void require_of_dim(const FurtherLimits& limits, std::size_t dim) {
           "further limits must be those of the path's coordinates");
 }
 
-/// Return the fastest law, none where torques cannot hold the robot.
+/// Return the fastest law, or none if torques cannot hold the robot.
 std::optional<TimeLaw> fastest(const RoundedPath& path, const JointLimits& most, const PathLimits& within) {
   require_of_dim(most, path.dim()), require_of_dim(within.further, path.dim());
   TimeLaw law = without_gil([&] { return trajectory::fastest(path, trajectory::grid_of(path, false), most, within); });
@@ -134,7 +134,7 @@ RoundedPath rounded(nb::handle waypoints, nb::handle deviation) {
   return without_gil([&] { return trajectory::rounded(points.matrix(), within.span()); });
 }
 
-/// Return the rows of waypoints between which a path is straight; those nearer than `same` are one.
+/// Return the rows of waypoints between which a path is straight; those nearer than `same` are equal.
 nb::object bends_of(nb::handle waypoints, double same) {
   const FloatRows points(waypoints, "waypoints");
   require(points.shape(0) >= 1, "waypoints must be 1 or more");
@@ -157,7 +157,7 @@ States averages(const RoundedPath& path, const TimeLaw& law, double window, nb::
   return made;
 }
 
-/// Return the largest share of rows, or of the differences of rows that follow each other.
+/// Return the largest share of rows, or of the differences of consecutive rows.
 double largest_share(nb::handle rows, nb::handle most, bool of_steps) {
   const FloatRows table(rows, "rows");
   const Floats limits(most, "most");

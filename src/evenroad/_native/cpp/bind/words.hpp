@@ -1,4 +1,4 @@
-// What Python calls the values of an enum.
+// Python's names of the values of an enum.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace evenroad::bind {
 
-/// One word for each value, in their order; the last value says how many there are.
+/// One word for each value, in their order; the last value is their number.
 template <auto LAST>
 struct Words {
   using Value = decltype(LAST);
 
-  /// What the enum is, as an error calls it.
+  /// The name of the enum in errors.
   const char* what;
   std::array<const char*, static_cast<std::size_t>(LAST) + 1> each;
 

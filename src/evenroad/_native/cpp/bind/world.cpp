@@ -44,7 +44,7 @@ void make_disk(world::Disk* self, nb::handle occupied, nb::handle frame, double 
   require(cells.shape(0) >= 1 && cells.shape(1) >= 1, "occupied must have a cell or more");
   require(cells.shape(0) < MOST_ROWS && cells.shape(1) < MOST_ROWS,
           "occupied must have at most a billion rows and columns");
-  // The square of a smaller one is 0, and counts as no radius at all.
+  // The square of a smaller one is 0, which is no radius.
   require(radius >= 1e-150 && radius < 1e300, "radius must be a finite number >= 1e-150");
   const double* f = of.data();
   without_gil(
@@ -89,7 +89,7 @@ nb::object nearest_free(const world::Disk& disk, double column, double row) {
   return found ? nb::object(nb::make_tuple(found->x - 1.0, found->y - 1.0)) : nb::none();
 }
 
-/// What is known of every cell of the padded grid.
+/// The state of every cell of the padded grid.
 template <class Of>
 OwnMatrix<std::uint8_t> of_cells(const world::Disk& disk, const Of& of) {
   OwnMatrix<std::uint8_t> values(disk.rows(), disk.columns());

@@ -1,4 +1,4 @@
-// Sixteen floats, and sixteen vectors of three: what they can do beyond the operators of the compiler's vector types.
+// Sixteen floats, and sixteen vectors of three: functions beyond the operators of the compiler's vector types.
 #pragma once
 
 #include "common/lanes.hpp"
@@ -6,7 +6,7 @@
 namespace evenroad {
 
 constexpr std::uint32_t ALL_LANES = (1U << LANES) - 1;
-/// What a squared length is taken for at least where one divides by it.
+/// Lower bound of a squared length that is a divisor.
 constexpr float LEAST_SQUARE = 1e-30F;
 
 EVENROAD_INLINE Floats16 spread(float number) { return all<Floats16>(number); }
@@ -29,7 +29,7 @@ EVENROAD_INLINE float largest(Floats16 a) {
   return a[0];
 }
 
-/// Return `value` cut to the range from `least` to `most`.
+/// Return `value` clipped to the range from `least` to `most`.
 EVENROAD_INLINE Floats16 clamp(Floats16 value, Floats16 least, Floats16 most) { return max(min(value, most), least); }
 
 /// Return numbers `size` >= 0 with the signs of `sign`.

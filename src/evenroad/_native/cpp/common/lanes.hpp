@@ -1,7 +1,7 @@
 // Several numbers that are computed at once: the vector types of GCC and clang, with the functions they lack.
 //
-// A type may be wider than the processor's registers: the compiler splits it.  Sums over lanes have one order, whatever
-// the processor, so every build of the kernel gives the same bits where no `fma` is written.
+// A type may be wider than the processor's registers; the compiler then splits it.  Sums over lanes have the same order
+// on every processor, so every build of the kernel gives the same bits in code without `fma`.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace evenroad {
 
-/// So many configurations, points or nodes are treated together.
+/// Number of configurations, points or nodes that are treated together.
 constexpr int LANES = 16;
 
 template <class T, int N>
@@ -42,7 +42,7 @@ EVENROAD_INLINE void store(T* to, V lanes) {
   __builtin_memcpy(to, &lanes, sizeof(V));
 }
 
-/// The same number in all lanes.  Minus zero leaves every number as it is, also -0, so that it costs no instruction.
+/// The same number in all lanes.  Adding minus zero changes no number, not even -0, so that it costs no instruction.
 template <class V, class T>
 EVENROAD_INLINE V all(T number) {
   return number - V{};
@@ -58,7 +58,7 @@ EVENROAD_INLINE V max(V a, V b) {
   return a > b ? a : b;
 }
 
-/// Magnitudes: a comparison's lanes are integers of the same size, and all bits but the sign stay.
+/// Absolute values: a comparison's lanes are integers of the same size, and all bits except the sign stay.
 template <class V>
 EVENROAD_INLINE V abs(V a) {
   using Bits = decltype(a < a);
@@ -107,7 +107,7 @@ EVENROAD_INLINE T least(const Lanes<T, N>& lanes) {
   return part[0];
 }
 
-/// Return the sum of all lanes, in one order whatever the processor: halves are added to each other.
+/// Return the sum of all lanes, in the same order on every processor: halves are added to each other.
 template <class T, int N>
 EVENROAD_INLINE T sum(const Lanes<T, N>& lanes) {
   T part[N];

@@ -1,4 +1,4 @@
-// A table of rows, one after the other in memory that somebody else keeps.
+// A table of consecutive rows in memory that another object owns.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace evenroad {
 
-/// Rows of equal length; T is const where they are only read.
+/// Rows of equal length; T is const if they are only read.
 template <class T>
 struct Matrix {
   T* data = nullptr;
@@ -24,7 +24,7 @@ struct Matrix {
   }
 };
 
-/// The same with memory of its own, zero at first.
+/// The same with its own memory, initially zero.
 template <class T>
 struct OwnMatrix {
   std::size_t rows, columns;
@@ -44,7 +44,7 @@ struct OwnMatrix {
   operator Matrix<T>() { return {values.data(), rows, columns}; }
 };
 
-/// Return the columns of a matrix as rows: loops over many rows then run as vectors.
+/// Return the columns of a matrix as rows, so that loops over many rows can be vectorised.
 inline OwnMatrix<double> transposed(Matrix<const double> matrix) {
   OwnMatrix<double> columns(matrix.columns, matrix.rows);
   for (std::size_t row = 0; row < matrix.rows; row++) {

@@ -1,6 +1,6 @@
-// The time of a query, for loops that may be long: they look at the clock now and then, and throw once it is over.
+// The time of a query, for long loops: they regularly look at the clock, and throw when the time is over.
 //
-// Python limits the time of its thread (evenroad._time_limit); threads that are started here limit their own.
+// Python limits the time of its thread (evenroad._time_limit); threads that are started here set their own limits.
 #pragma once
 
 #include <algorithm>
@@ -11,19 +11,19 @@ namespace evenroad {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// Thrown where the time is over; Python sees evenroad._time_limit.BudgetSpent.
+/// Thrown when the time is over; Python sees evenroad._time_limit.BudgetSpent.
 struct TimeIsOver : std::exception {
   const char* what() const noexcept override { return "the time is over"; }
 };
 
-/// When the work of this thread has to end.
+/// The deadline of this thread.
 constinit inline thread_local SteadyClock::time_point end_of_time = SteadyClock::time_point::max();
 
 inline void look_at_clock() {
   if (end_of_time != SteadyClock::time_point::max() && SteadyClock::now() >= end_of_time) throw TimeIsOver();
 }
 
-/// Looks at the clock once in a number of calls.
+/// Looks at the clock once per number of calls.
 class ClockWatch {
  public:
   explicit ClockWatch(int every) : every_(every) {}
@@ -38,14 +38,14 @@ class ClockWatch {
   int every_, calls_ = 0;
 };
 
-/// Return when that many seconds from now are over; any number that is too large, or none, is never over.
+/// Return the time this many seconds from now; a number that is too large, or NaN, never ends.
 inline SteadyClock::time_point end_after(double seconds) {
   if (!(seconds < 1e9)) return SteadyClock::time_point::max();
   return SteadyClock::now() +
          std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double>(std::max(seconds, 0.0)));
 }
 
-/// Limits the work of this thread, besides earlier limits, as long as this lives.
+/// Limits the time of this thread, in addition to earlier limits, during its lifetime.
 class TimeLimit {
  public:
   explicit TimeLimit(double seconds) : outer_(end_of_time) { end_of_time = std::min(outer_, end_after(seconds)); }

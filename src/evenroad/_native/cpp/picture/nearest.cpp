@@ -7,12 +7,12 @@ namespace evenroad::picture {
 
 namespace {
 
-/// Return the first pixel whose centre lies at or beyond a place, at most `count`.
+/// Return the first pixel whose centre lies at or beyond a coordinate, at most `count`.
 std::size_t first_from(double position, std::size_t count) {
   return static_cast<std::size_t>(std::clamp(std::ceil(position - 0.5), 0.0, static_cast<double>(count)));
 }
 
-/// Return the column of a side at a height; `from` is above `to`, so that both its triangles get the same.
+/// Return the column of a side at a height; `from` is above `to`, so that both of its triangles get the same result.
 double column_at(const Seen& from, const Seen& to, double row) {
   return from.column + (row - from.row) * ((to.column - from.column) / (to.row - from.row));
 }
@@ -21,7 +21,7 @@ double column_at(const Seen& from, const Seen& to, double row) {
 
 void Nearest::add(const Flat& flat, std::int32_t number) {
   const double size = area(flat);
-  // Also false where a number is none.
+  // Also false for NaN.
   if (!(std::abs(size) > 1e-12 && std::abs(size) < 1e18)) return;
   auto [a, b, c] = flat;
   const double right = ((c.row - a.row) * (b.near - a.near) - (b.row - a.row) * (c.near - a.near)) / size;

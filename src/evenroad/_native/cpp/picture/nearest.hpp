@@ -1,4 +1,4 @@
-// What is nearest on each pixel of a picture, of triangles that are cut into rows of pixels.
+// A depth buffer: the nearest triangle on each pixel of a picture; triangles are cut into rows of pixels.
 #pragma once
 
 #include <array>
@@ -7,21 +7,21 @@
 
 namespace evenroad::picture {
 
-/// A point as it is seen: its column and row, and 1 / depth, which is linear on a flat face; what is nearer has more.
+/// A projected point: its column and row, and 1 / depth, which is linear on a flat face and larger for nearer points.
 struct Seen {
   double column, row, near;
 };
 
-/// A triangle as it is seen.
+/// A projected triangle.
 using Flat = std::array<Seen, 3>;
 
-/// Return twice the area of a triangle, negative where its corners go round the other way.
+/// Return twice the area of a triangle, negative for the other orientation.
 inline double area(const Flat& flat) {
   const auto& [a, b, c] = flat;
   return (b.column - a.column) * (c.row - a.row) - (b.row - a.row) * (c.column - a.column);
 }
 
-/// What is nearest on each pixel, row after row: how near it is, and which triangle; `far` and -1 where there is none.
+/// The nearest triangle on each pixel, row after row, and its 1 / depth; `far` and -1 without one.
 struct Nearest {
   std::size_t columns, rows;
   std::vector<float> near;
@@ -30,7 +30,7 @@ struct Nearest {
   Nearest(std::size_t columns, std::size_t rows, float far)
       : columns(columns), rows(rows), near(columns * rows, far), owner(columns * rows, -1) {}
 
-  /// Bring it up to date with a triangle, on all pixels whose centre it covers.
+  /// Draw a triangle on all pixels whose centre it covers.
   void add(const Flat& flat, std::int32_t number);
 };
 

@@ -11,17 +11,17 @@ namespace {
 
 /// Pixels are drawn this many times as large, then shrunk, so that edges are smooth.
 constexpr std::size_t FINER = 2, SAMPLES = FINER * FINER;
-/// Side of the picture that the light sees [pixels], and depth below a surface that is in its own shadow for sure [m].
+/// Side of the shadow map [pixels], and depth below a surface that is certainly in its own shadow [m].
 constexpr std::size_t SHADOW = 1024;
 constexpr double BIAS = 0.006;
-/// Where a point is compared with what the light sees, so that edges of shadows are soft [pixels].
+/// Offsets at which a point is compared with the shadow map, so that edges of shadows are soft [pixels].
 constexpr std::array<std::array<double, 2>, 4> TAPS{{{-0.7, -1.9}, {1.9, -0.7}, {0.7, 1.9}, {-1.9, 0.7}}};
-/// Distance of the lines on the floor, how far it reaches, and where it fades [m].
+/// Distance of the lines on the floor, its size, and the distance at which it fades [m].
 constexpr double TILE = 0.25, FAR = 40.0, FADES = 1.5, FADED = 4.5;
 /// Largest 1 / depth that is drawn: nearer triangles may reach behind the camera.
 constexpr double NEAREST = 900.0;
 
-/// What the light sees: where it is nearer to something else, a point lies in shadow.
+/// The shadow map of the light: a point lies in shadow if another surface is nearer to the light.
 class Shadow {
  public:
   Shadow(const Studio& studio, const Triangles& triangles, std::size_t count)
@@ -40,7 +40,7 @@ class Shadow {
     for (std::size_t t = 0; t < count; t++) {
       Flat flat;
       for (std::size_t i = 0; i < 3; i++) flat[i] = seen(triangles.corner(t, i));
-      // Of what is closed, the faces towards the light are enough.
+      // For closed bodies, the faces towards the light suffice.
       if (triangles.closed[t] && area(flat) < 0.0) continue;
       map_.add(flat, 0);
     }
@@ -71,7 +71,7 @@ class Shadow {
   Nearest map_;
 };
 
-/// A part of a picture, drawn larger: its first pixel, and what is nearest on it.
+/// A part of a picture, drawn larger: its first pixel, and its depth buffer.
 struct Window {
   std::size_t column, row;
   Nearest found;
@@ -84,7 +84,7 @@ struct Window {
     return x >= column && y >= row && x < column + columns() && y < row + rows();
   }
 
-  /// Where the samples of a pixel are.
+  /// The positions of a pixel's samples.
   std::array<std::size_t, SAMPLES> samples(std::size_t x, std::size_t y) const {
     std::array<std::size_t, SAMPLES> samples_behind{};
     const std::size_t first = FINER * (y - row) * found.columns + FINER * (x - column);
@@ -93,7 +93,7 @@ struct Window {
   }
 };
 
-/// What is drawn of a picture: how bodies are seen, and which colour a pixel has.
+/// The renderer of a picture: the projection of bodies, and the colours of pixels.
 struct Painter {
   const Camera& camera;
   const Studio& studio;
@@ -111,7 +111,7 @@ struct Painter {
     }
   }
 
-  /// Return what is nearest of some triangles, in the window that they are in.
+  /// Return the depth buffer of some triangles, in their window.
   Window nearest(std::size_t first, std::size_t end) const;
 
   Vector body(std::size_t t, std::size_t column, std::size_t row, bool in_shadow) const;
@@ -177,7 +177,7 @@ Vector Painter::body(std::size_t t, std::size_t column, std::size_t row, bool in
                                 between(a.row, b.row, c.row) / static_cast<double>(FINER));
   Vector normal = first * triangles.normal(t, 0) + second * triangles.normal(t, 1) + third * triangles.normal(t, 2);
   normal = 1.0 / std::max(length(normal), 1e-12) * normal;
-  // What is seen from behind, as the inside of an open mesh, is lit as its outside.
+  // A back face, such as the inside of an open mesh, is lit like its front.
   if (dot(normal, ray) > 0.0) normal = -1.0 * normal;
   const Vector towards = studio.light[2], half = towards - 1.0 / length(ray) * ray;
   const double glance = std::max(dot(normal, half), 0.0) / std::max(length(half), 1e-12);
@@ -192,7 +192,7 @@ Vector Painter::body(std::size_t t, std::size_t column, std::size_t row, bool in
   return (0.52 + 0.14 * normal.z + 0.48 * lit) * triangles.colour(t) + 60.0 * shine * Vector{1.0, 1.0, 1.0};
 }
 
-/// Return the colour of what is behind all bodies: the floor with its lines, or the sky.
+/// Return the colour of the background: the floor with its lines, or the sky.
 Vector Painter::background(std::size_t column, std::size_t row) const {
   const Vector ray = camera.ray(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
   const double away = (studio.floor - camera.eye.z) / ray.z;
@@ -209,7 +209,7 @@ Vector Painter::background(std::size_t column, std::size_t row) const {
   return (0.72 + 0.28 * shadow.light_at(point)) * (tiles + fade * (studio.horizon - tiles));
 }
 
-/// Return the colour of a pixel: the mean of its samples, each triangle looked at once.
+/// Return the colour of a pixel: the mean of its samples, with each triangle shaded once.
 Vector solid_pixel(const Painter& painter, const Window& solid, std::size_t column, std::size_t row) {
   if (!solid.holds(column, row)) return painter.background(column, row);
   std::array<std::int32_t, SAMPLES> owner{};
@@ -238,7 +238,7 @@ Vector drawn_over(Vector below, const Painter& painter, const Layer& layer, cons
   for (std::size_t i = 0; i < SAMPLES; i++) {
     if (ours.found.owner[samples[i]] < 0) continue;
     owner = ours.found.owner[samples[i]];
-    // A still body's double lies on the body: what is seen is nearer by half a percent.
+    // A ghost may coincide with its body, so the body counts as nearer by half a percent.
     const bool seen = !before || ours.found.near[samples[i]] >= 1.005F * solid.found.near[samples_behind[i]];
     const bool through = before && solid.found.owner[samples_behind[i]] >= static_cast<std::int32_t>(see_through);
     share += layer.opacity * (seen ? 1.0 : through ? layer.hidden : 0.0);
@@ -274,7 +274,7 @@ std::vector<std::uint8_t> paint(const Camera& camera, const Studio& studio, cons
   bytes.reserve(3 * picture.size());
   for (const Vector& colour : picture) {
     for (const double part : {colour.x, colour.y, colour.z}) {
-      // What is no number is black.
+      // NaN becomes black.
       bytes.push_back(static_cast<std::uint8_t>(part > 0.0 ? std::min(part, 255.0) : 0.0));
     }
   }

@@ -22,13 +22,13 @@ struct Vector {
 inline double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline double length(Vector a) { return std::sqrt(dot(a, a)); }
 
-/// A camera that stands level, with `scale` pixels of a metre at a depth of one.
+/// A level camera, with `scale` pixels per metre at a depth of one.
 struct Camera {
   Vector eye, right, up, forward;
   double scale;
   std::size_t columns, rows;
 
-  /// Return the direction of a place in the picture, with depth 1.
+  /// Return the direction of a point in the picture, with depth 1.
   Vector ray(double column, double row) const {
     const double across = (column - 0.5 * static_cast<double>(columns)) / scale;
     const double above = (0.5 * static_cast<double>(rows) - row) / scale;
@@ -36,7 +36,7 @@ struct Camera {
   }
 };
 
-/// Triangles, (t, 9) each: corners, and normals at them; their colours, (t, 3); and which are seen from outside alone.
+/// Triangles, (t, 9) each: corners and their normals; colours, (t, 3); and which are visible only from outside.
 struct Triangles {
   Matrix<const double> corners, normals, colours;
   std::span<const bool> closed;
@@ -52,14 +52,14 @@ struct Triangles {
   }
 };
 
-/// Triangles up to a number, from where the layer before ends; of a translucent one `hidden` of its opacity is seen
-/// where a solid triangle from `Triangles::see_through` on hides it.
+/// Triangles up to a number, from the end of the layer before.  A translucent layer keeps the share `hidden` of its
+/// opacity behind solid triangles from `Triangles::see_through` on.
 struct Layer {
   std::size_t end;
   double opacity, hidden;
 };
 
-/// A floor, where it is looked at, its colours and those above it, and the directions across the light and towards it.
+/// A floor, the point of view, colours of floor and sky, and the directions across the light and towards it.
 struct Studio {
   double floor;
   Vector middle;

@@ -1,4 +1,4 @@
-// Points in blocks of 32: a block is what the sums over pairs compute at once.
+// Points in blocks of 32; the sums over pairs compute a block at once.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace evenroad::points {
 
 #if defined(EVENROAD_SANITIZED)
-// GCC takes minutes for wide vectors whose every lane is checked.
+// GCC takes minutes to compile wide vectors with a check of every lane.
 constexpr std::size_t WIDTH = 8;
 #else
 constexpr std::size_t WIDTH = 32;

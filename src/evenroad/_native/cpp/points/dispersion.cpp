@@ -1,5 +1,5 @@
-// A cell of the box, with centre c and half sides h, is within sqrt(sum_k (|c_k - x_k| + h_k)^2) of a point x, that of
-// its corner farthest from x; the least of these over all x bounds the distance of every place of the cell.
+// A cell of the box has a centre c and half sides h.  Its farthest corner from a point x is at the distance sqrt(sum_k
+// (|c_k - x_k| + h_k)^2).  The least of these over all x bounds the distance of every position in the cell.
 #include "points/dispersion.hpp"
 
 #include <algorithm>
@@ -14,16 +14,16 @@ namespace evenroad::points {
 namespace {
 
 constexpr double INF = std::numeric_limits<double>::infinity();
-/// What rounding may add to a squared distance.
+/// Bound of the rounding of a squared distance.
 constexpr double ROUNDING = 1.0 + 1e-9;
 
-/// A box that waits to be examined, with the points that can be nearest to one of its places: a range of a stack.
+/// A box that waits to be examined, with the points that can be nearest to one of its positions: a range of a stack.
 struct Cell {
   std::vector<double> centre, half;
   std::size_t first, last;
 };
 
-/// Squared distances of a point from a cell: from its centre, its farthest corner, and its nearest place.
+/// Squared distances of a point from a cell: from its centre, its farthest corner, and its nearest position.
 struct Distances {
   double to_centre = 0.0, to_corner = 0.0, to_cell = 0.0;
 };
@@ -54,7 +54,7 @@ class BranchAndBound {
   Dispersion run(double lower, double share, double most) {
     Dispersion found{lower, 0.0, 0.0};
     while (waiting_ > 0) {
-      // The cell moves out of the stack, as its halves take its place.
+      // The cell is moved out of the stack, because its halves overwrite it.
       std::swap(cell_, cells_[--waiting_]);
       double closest = INF, bound = INF;
       for (std::size_t entry = cell_.first; entry < cell_.last; entry++) {

@@ -1,4 +1,4 @@
-// Bounds of the dispersion: the largest distance of a place of a box from its nearest point, by branch and bound.
+// Bounds of the dispersion, the largest distance of a position in a box from its nearest point, by branch and bound.
 #pragma once
 
 #include <span>
@@ -15,8 +15,8 @@ struct Dispersion {
 /// Return bounds of the dispersion of points, (n, d), over a box with these sides, of which axes with a finite period
 /// wrap.
 ///
-/// The search begins with a distance that some place has, `lower`, and ends when the bounds are apart by a factor of
-/// 1 + `share`, or more than `most` coordinates were examined: then cells are taken as they are.
+/// The search begins with a distance that some position has, `lower`.  It ends when the bounds differ by a factor of at
+/// most 1 + `share`, or when more than `most` coordinates were examined.
 Dispersion bound_dispersion(Matrix<const double> points, std::span<const double> period, std::span<const double> sides,
                             double lower, double share, double most);
 

@@ -1,4 +1,4 @@
-// Each point meets the others in blocks of 32: all factors of a block's pairs stay in registers.
+// Each point is paired with the others in blocks of 32, so that all factors of a block's pairs stay in registers.
 #include "points/pair_sums.hpp"
 
 #include "points/blocks.hpp"
@@ -26,8 +26,8 @@ PairSums pair_sums(Matrix<const double> points, const MaximumPairs& pairs, bool 
     }
     result.sums[i] = sum<double, WIDTH>(row);
     if (!want_gradient) continue;
-    // Where the other point is below, the factor is ceiling - slope * x: the same for all of them, so one division a
-    // coordinate is enough.  Such a pair counts twice, a point with itself once.
+    // If the other point is below, the factor is ceiling - slope * x.  It is the same for all of these, so one division
+    // per coordinate suffices.  Such a pair counts twice, a point with itself once.
     double itself = 1.0;
     for (std::size_t k = 0; k < d; k++) itself *= pairs.ceiling[k] - pairs.slope[k] * points(k, i);
     for (std::size_t k = 0; k < d; k++) {
@@ -73,7 +73,7 @@ PairSums pair_sums(Matrix<const double> points, const DistancePairs& pairs, bool
     double itself = 1.0;
     for (std::size_t k = 0; k < d; k++) itself *= pairs.level[k] + 2.0 * pairs.own(k, i);
     for (std::size_t k = 0; k < d; k++) {
-      // The step of a point to itself, 0, was taken for a rise; that pair has no slope in the gap.
+      // The step of a point to itself, 0, counted as a rise, but that pair has no slope in the gap.
       const double own_pair = pairs.slope[k] * itself / (pairs.level[k] + 2.0 * pairs.own(k, i));
       const double rest = sum<double, WIDTH>(rest_sum[k]), slope = sum<double, WIDTH>(slope_sum[k]);
       result.gradient(k, i) = 2.0 * (pairs.own_slope(k, i) * rest - slope) + 2.0 * own_pair;

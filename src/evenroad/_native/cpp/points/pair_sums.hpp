@@ -25,9 +25,9 @@ struct PairSums {
   OwnMatrix<double> gradient;
 };
 
-/// Sum over all pairs of points, (d, n); the gradient stays zero where it is not wanted.
+/// Sum over all pairs of points, (d, n); the gradient stays zero if it is not wanted.
 ///
-/// Where two points share a coordinate the kernels have a kink: the gradient is then one of the one-sided ones.
+/// If two points share a coordinate, the kernels have a kink, and the gradient is one of the one-sided ones.
 PairSums pair_sums(Matrix<const double> points, const MaximumPairs& pairs, bool want_gradient);
 PairSums pair_sums(Matrix<const double> points, const DistancePairs& pairs, bool want_gradient);
 

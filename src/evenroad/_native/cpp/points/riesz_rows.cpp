@@ -9,7 +9,7 @@ namespace evenroad::points {
 
 namespace {
 
-/// Squared distance that coincident points count as: far below any real one, and its ratio to itself is 1.
+/// Squared distance of coincident points: far below any real one, and its ratio to itself is 1.
 constexpr double SMALLEST_SQUARED = 1e-200;
 constexpr double FAR = 1e300;
 
@@ -58,7 +58,7 @@ RieszRows riesz_rows(Matrix<const double> points, unsigned s, bool periodic, boo
     push.assign(d, Block{});
     for (std::size_t block = 0; block < others.count(); block++) {
       const Block inverse = 1.0 / squared[block];
-      // The point itself and what fills the last block up are no neighbours.
+      // The point itself and the padding of the last block are no neighbours.
       const Block base = squared[block] < FAR ? smallest * inverse : Block{};
       Block power = half_power(base, s);
       sum_of_powers += power;

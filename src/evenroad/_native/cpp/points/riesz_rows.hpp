@@ -7,16 +7,16 @@
 
 namespace evenroad::points {
 
-/// Of each point: its nearest squared distance, the sum of (nearest / distance^2)^(s/2) over the others, and the sum of
-/// (nearest / distance^2)^(s/2) / distance^2 * step over them, (d, n).
+/// For each point: its nearest squared distance, the sum of (nearest / distance^2)^(s/2) over the others, and the sum
+/// of (nearest / distance^2)^(s/2) / distance^2 * step over them, (d, n).
 struct RieszRows {
   std::vector<double> nearest, sums;
   OwnMatrix<double> pushes;
 };
 
-/// Return the rows of points, (d, n), on the torus if `periodic`; the pushes stay zero where they are not wanted.
+/// Return the rows of points, (d, n), on the torus if `periodic`; the pushes stay zero if they are not wanted.
 ///
-/// Coincident points count as 10^-100 apart.  Every power is taken relative to the largest of its row, so that nothing
+/// Coincident points count as 10^-100 apart.  Powers are relative to the largest of their row, so that nothing
 /// overflows.
 RieszRows riesz_rows(Matrix<const double> points, unsigned s, bool periodic, bool want_pushes);
 

@@ -1,5 +1,5 @@
-// The supremum is reached at boxes whose upper sides pass through points, or are 1 (Niederreiter 1972): each is counted
-// once without and once with the points on those sides.
+// The supremum is at boxes whose upper sides pass through points, or are 1 (Niederreiter 1972).  Each is evaluated
+// without and with the points on those sides.
 #include "points/star_discrepancy.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace evenroad::points {
 
 namespace {
 
-/// A point that is inside of a box or on its sides; `strictly` if it is on none of them.
+/// A point that is inside a box or on its sides; `strictly` if it is on none of them.
 struct Inside {
   std::int32_t point;
   bool strictly;
@@ -31,13 +31,13 @@ class Search {
   }
 
  private:
-  /// What a level keeps: the sides it tries, and the points inside of the one at hand.
+  /// The data of a level: the sides to try, and the points inside the current one.
   struct Level {
     std::vector<double> sides;
     std::vector<Inside> inner;
   };
 
-  /// Try all sides of this coordinate; `volume` is that of the sides of those before.
+  /// Try all sides of this coordinate; `volume` is the product of the sides before.
   void visit(std::span<const Inside> inside, std::size_t level, double volume) {
     if (level + 1 == points_.rows) return sweep_last(inside, volume);
     const std::span<const double> at = points_[level];
@@ -52,7 +52,7 @@ class Search {
       for (const Inside& each : inside) {
         if (at[each.point] <= side) inner.push_back({each.point, each.strictly && at[each.point] < side});
       }
-      // Sides come in falling order and both bounds fall with the side: the rest is no better.
+      // Sides come in descending order, and both bounds decrease with the side, so the rest is no better.
       if (std::max(volume * side, static_cast<double>(inner.size()) / n) <= best_) return;
       visit(inner, level + 1, volume * side);
     }

@@ -5,9 +5,9 @@
 
 namespace evenroad::points {
 
-/// Return the star discrepancy of points, (d, n) with d, n >= 1, which come in the order of their last coordinate.
+/// Return the star discrepancy of points, (d, n) with d, n >= 1, sorted by their last coordinate.
 ///
-/// Sides are enumerated coordinate by coordinate, only through points that are still inside, and a branch is left where
+/// Sides are enumerated coordinate by coordinate, only through points that are still inside.  A branch is pruned if
 /// neither its volume nor its share of points exceeds the best found (Gnewuch, Srivastav and Winzen 2009).
 double star_discrepancy(Matrix<const double> points);
 

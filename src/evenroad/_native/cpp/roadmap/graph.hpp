@@ -1,4 +1,4 @@
-// A graph as compressed rows, with links that come and go; its connected components.
+// A graph as compressed rows, with links that can be replaced; its connected components.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace evenroad::roadmap {
 
-/// One direction of an undirected edge: to which node it leads, and the edge's number.
+/// One direction of an undirected edge: its target node, and the edge's number.
 struct Arc {
   std::int32_t to, edge;
 };
@@ -20,10 +20,10 @@ class Rows {
  public:
   Rows() = default;
 
-  /// Take edges, (m, 2), of which both nodes are below `nodes`; their numbers begin with `numbered_from`.
+  /// Make it from edges, (m, 2), with both nodes below `nodes`; their numbers begin with `numbered_from`.
   Rows(std::size_t nodes, Matrix<const std::int32_t> edges, std::int32_t numbered_from);
 
-  /// The arcs of a node: none of those that the rows were not made for.
+  /// The arcs of a node; none for a node that the rows do not have.
   std::span<const Arc> operator[](std::size_t node) const {
     if (node + 1 >= first_.size()) return {};
     return std::span(arcs_).subspan(first_[node], first_[node + 1] - first_[node]);
@@ -43,7 +43,7 @@ class Graph {
         numbers_(edges.rows),
         fixed_(std::make_shared<const Rows>(nodes, edges, 0)) {}
 
-  /// Return this graph with that many nodes, and links instead of those that it has; O(nodes).
+  /// Return this graph with that many nodes, and with other links; O(nodes).
   Graph with_links(std::size_t nodes, Matrix<const std::int32_t> links, std::int32_t numbered_from) const;
 
   std::size_t nodes() const { return nodes_; }

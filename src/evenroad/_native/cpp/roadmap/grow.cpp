@@ -7,7 +7,7 @@ namespace evenroad::roadmap {
 
 namespace {
 
-/// The nodes that a tree may take, nearest first, at most `most` of them.
+/// The nodes that a tree may add, nearest first, at most `most` of them.
 class Offered {
  public:
   Offered(std::span<const double> away, std::size_t most) : away_(away), most_(most) {}
@@ -30,7 +30,7 @@ class Offered {
   std::vector<std::int32_t> nodes_;
 };
 
-/// Take the far ends of free edges into the trees; return an edge at which they meet, or -1.
+/// Add the far nodes of free edges to the trees; return an edge at which they meet, or -1.
 std::int32_t take(Matrix<const std::int32_t> edges, std::span<const std::int8_t> edge_states, const TwoTrees& trees,
                   std::span<const std::int32_t> asked) {
   for (const std::int32_t edge : asked) {

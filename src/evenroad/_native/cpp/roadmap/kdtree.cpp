@@ -44,7 +44,8 @@ class Tree {
     return order().subspan(nodes_[node].first, nodes_[node].last - nodes_[node].first);
   }
 
-  /// Squared distance of a point from a node's box, rounded like that of two points in each step: never too large.
+  /// Squared distance of a point from a node's box, with each step rounded like that of two points, so that it is never
+  /// too large.
   template <bool Wraps>
   double squared_distance(std::size_t node, const double* point, std::span<const double> period) const {
     const std::size_t d = points_.columns;
@@ -53,7 +54,7 @@ class Tree {
     for (std::size_t axis = 0; axis < d; axis++) {
       const double to_low = low[axis] - point[axis], to_high = point[axis] - high[axis];
       double gap = std::max(std::max(to_low, to_high), 0.0);
-      // The way round ends at the other side of the box.
+      // The wrapped distance is to the other side of the box.
       if (Wraps && gap > 0.0) gap = std::min(gap, period[axis] + std::min(to_low, to_high));
       total += gap * gap;
     }
@@ -180,7 +181,7 @@ std::vector<std::int32_t> k_nearest(const Periodic& set, std::size_t k, bool ear
   std::vector<double> distances(k);
   const Tree tree(set.points);
   const auto find = set.wraps() ? find_nearest<true> : find_nearest<false>;
-  // Queries in tree order touch the same leaves one after the other, which keeps them in the cache.
+  // Queries in tree order visit the same leaves consecutively, which keeps them in the cache.
   ClockWatch clock(POINTS_A_LOOK);
   for (const std::int32_t query : tree.order()) {
     clock.look();

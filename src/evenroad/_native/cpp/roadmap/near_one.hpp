@@ -1,4 +1,4 @@
-// Which of many points are near one: all distances, and the least of them.
+// The nearest of many points to one: all distances, and the least of them.
 #pragma once
 
 #include <cstdint>

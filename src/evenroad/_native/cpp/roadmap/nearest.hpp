@@ -1,4 +1,4 @@
-// Distances of points on axes that may wrap, and the nearest of some.
+// Distances of points on axes that may wrap, and the nearest ones.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +19,10 @@ double squared_distance(const double* a, const double* b, std::span<const double
   return total;
 }
 
-/// The nearest points that were found, sorted; of equally far ones the lower indices.
+/// The nearest points that were found, sorted; ties go to the lower indices.
 class Nearest {
  public:
-  /// There is room for as many as are to be found.
+  /// The capacity is the number of points to find.
   Nearest(std::span<std::int32_t> found, std::span<double> distances) : found_(found), distances_(distances) {}
 
   std::size_t count() const { return count_; }

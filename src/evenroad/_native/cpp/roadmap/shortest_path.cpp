@@ -17,7 +17,7 @@ class Heap {
   bool empty() const { return entries_.empty(); }
   std::int64_t least() const { return entries_.front().key; }
 
-  /// Put a node in, or move it up to a key that is lower than the one it has.
+  /// Insert a node, or move it up to a lower key.
   void put(std::int32_t node, std::int64_t key) {
     std::size_t hole = index_[node];
     if (hole == NOWHERE) hole = entries_.size(), entries_.emplace_back();
@@ -63,7 +63,7 @@ class Heap {
   std::vector<std::uint32_t> index_;
 };
 
-/// From where a node was reached at the least cost.
+/// The arc by which a node was reached at the least cost.
 struct From {
   std::int32_t node, edge;
 };
@@ -93,7 +93,7 @@ Path shortest_path(const Graph& graph, const Costs& costs, const States& states,
   cost[start] = 0;
   open.put(start, costs.bounds[start]);
   ClockWatch clock(512);
-  // Ties with the goal are looked at, too: one of them may have the lower node.
+  // Ties with the goal are expanded, too, because one of them may have the lower node.
   while (!open.empty() && (end < 0 || open.least() <= cost[end])) {
     clock.look();
     const std::int32_t node = open.take();

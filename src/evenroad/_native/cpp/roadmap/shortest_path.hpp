@@ -10,7 +10,7 @@
 
 namespace evenroad::roadmap {
 
-/// What is known of a node or an edge.
+/// The state of a node or an edge.
 enum State : std::int8_t { UNKNOWN, FREE, BLOCKED };
 
 /// Lengths of the edges by number, >= 1, and lower bounds of the path from each node to the nearest goal.
@@ -18,12 +18,12 @@ struct Costs {
   std::span<const std::int64_t> weights, bounds;
 };
 
-/// What is known of the edges by number and of the nodes.
+/// The states of the edges by number, and of the nodes.
 struct States {
   std::span<const std::int8_t> edges, nodes;
 };
 
-/// Return the length of a path and an edge together, refusing what would not be a 64-bit integer in the end.
+/// Return the sum of a path's and an edge's length; refuse sums that would not stay 64-bit integers.
 inline std::int64_t extended(std::int64_t path, std::int64_t edge, std::int64_t least = 1) {
   constexpr std::int64_t MOST = std::int64_t{1} << 61;
   if (path < 0 || path > 2 * MOST || edge < least || edge > MOST) {
@@ -32,7 +32,7 @@ inline std::int64_t extended(std::int64_t path, std::int64_t edge, std::int64_t 
   return path + edge;
 }
 
-/// The nodes of a path, start first, and its edges; both empty where there is none.
+/// The nodes of a path, start first, and its edges; both are empty if there is none.
 struct Path {
   std::vector<std::int32_t> nodes, edges;
 };

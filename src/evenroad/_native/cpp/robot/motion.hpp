@@ -9,11 +9,10 @@ namespace evenroad::robot {
 
 /// A motion between two configurations as `enter` writes them.
 struct Motion {
-  std::vector<double> start, end,
-      direction;           // its endpoints in lexicographic order, and the shortest direction between them
-  bool exchanged = false;  // whether it was given in the other order
-  int segments = 0;        // number of segments of at most the resolution
-  Doubles16 share{};       // positions of the sixteen current states
+  std::vector<double> start, end, direction;  // endpoints in lexicographic order, and the direction between them
+  bool exchanged = false;                     // whether it was given in the other order
+  int segments = 0;                           // number of segments of at most the resolution
+  Doubles16 share{};                          // positions of the sixteen current states
 
   explicit Motion(std::size_t dim) : start(dim), end(dim), direction(dim) {}
 

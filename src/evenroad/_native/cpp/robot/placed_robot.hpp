@@ -71,8 +71,7 @@ struct PlacedRobot {
   std::vector<PlacedFrame> frames;  // the root's first
   std::vector<PlacedBody> bodies;
   std::vector<PlacedCapsule> capsules;
-  KeptOfPairs kept,
-      kept_of_itself;  // caches of true shapes and obstacles, and of hulls of the robot; no result depends on them
+  KeptOfPairs kept, kept_of_itself;  // caches for obstacles and for the robot itself; no result depends on them
 
   /// Memory for a robot's poses, with those that no joint moves filled in.
   explicit PlacedRobot(const Robot& robot);

@@ -12,8 +12,7 @@ namespace evenroad::robot {
 namespace {
 
 constexpr double LEAST_CELL = 4e-3;  // [m]
-constexpr double SURE =
-    1e-7;  // points this near to a cell, in sides of one, count as in it, too; more than rounding errors
+constexpr double SURE = 1e-7;        // points this near to a cell, in sides of one, count as inside: more than rounding
 constexpr int MOST_WINDINGS = 100;
 constexpr int FARTHEST = 64;  // distances beyond this many cells are clipped
 constexpr double INFINITE = std::numeric_limits<double>::infinity();

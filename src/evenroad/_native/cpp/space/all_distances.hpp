@@ -1,4 +1,4 @@
-// Distances of rows of two batches: of all pairs, (n, dim) and (m, dim), as (n, m), or row by row.
+// Distances between rows of two batches: of all pairs, (n, dim) and (m, dim), as (n, m), or row by row.
 #pragma once
 
 #include <span>
@@ -8,11 +8,11 @@
 
 namespace evenroad::space {
 
-/// Euclidean in scaled coordinates; those of a finite period wrap.
+/// Return Euclidean distances in scaled coordinates; those of a finite period wrap.
 OwnMatrix<double> flat_distances(Matrix<const double> a, Matrix<const double> b, std::span<const double> scale,
                                  std::span<const double> period);
 
-/// The same of each row of `a` and that of `b`.
+/// Return the same between each row of `a` and that of `b`.
 std::vector<double> row_distances(Matrix<const double> a, Matrix<const double> b, std::span<const double> scale,
                                   std::span<const double> period);
 

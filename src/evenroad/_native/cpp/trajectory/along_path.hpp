@@ -1,4 +1,4 @@
-// One state of a law: where it is along the path, and how the path turns there.
+// One state of a law: its position along the path, and the bend of the path there.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace evenroad::trajectory {
 
-/// One state: cosine and sine of the angle since the beginning of an arc, and how far along its axis; of a line the
+/// One state: cosine and sine of the angle since the beginning of an arc, and the length along a line; on a line the
 /// cosine is 1 and the sine 0.
 struct Turn {
   std::size_t piece;
@@ -46,7 +46,7 @@ inline std::vector<std::size_t> pieces_of(const RoundedPath& path, const TimeLaw
   return pieces;
 }
 
-/// Where one is in an interval, some time after its beginning.
+/// The position in an interval, some time after its beginning.
 struct Progress {
   double length, speed;
 

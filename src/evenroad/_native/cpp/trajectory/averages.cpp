@@ -8,7 +8,7 @@ namespace evenroad::trajectory {
 
 namespace {
 
-/// So many rows are looked at beside each other.
+/// Number of rows processed in parallel.
 constexpr std::size_t ROWS = 16;
 
 /// Positions and velocities at equal steps of time, cubics between them, and the integrals of these.
@@ -50,11 +50,11 @@ class Travelled {
   OwnMatrix<double> positions_, velocities_, integrals_;
 };
 
-/// Return the largest share that numbers use, row after row, in absolute value; `number` gives them by their place.
+/// Return the largest absolute value of numbers as a share of limits, row by row; `number` returns them by index.
 template <class Number>
 double largest_share_of(std::size_t count, std::span<const double> most, Number number) {
   if (most.empty()) return 0.0;
-  // Many rows beside each other: the next largest then need not wait for the last.
+  // Many rows in parallel, so that the next maximum need not wait for the last.
   std::vector<double> largest(ROWS * most.size());
   for (std::size_t first = 0; first < count; first += largest.size()) {
     const std::size_t some = std::min(largest.size(), count - first);
@@ -75,7 +75,7 @@ void write_averages(const RoundedPath& path, const TimeLaw& law, double window, 
   std::vector<double> before(count), here(dim), there(dim);
   for (std::size_t row = 0; row < count; row++) before[row] = t[row] - window;
   OwnMatrix<double> old_positions(count, dim), old_velocities(count, dim);
-  // What was accelerations is not used.
+  // The memory of accelerations is not used.
   const StatesAt states(path, law);
   states.write(before, old_positions, old_velocities, accelerations);
   states.write(t, positions, velocities, accelerations);

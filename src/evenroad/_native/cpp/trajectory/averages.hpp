@@ -10,7 +10,7 @@ namespace evenroad::trajectory {
 
 /// Write positions, velocities and accelerations at times that rise, averaged over the `window` before each, > 0.
 ///
-/// Positions are those of cubics between states as many as there are times.
+/// Positions are those of cubics between as many states as there are times.
 void write_averages(const RoundedPath& path, const TimeLaw& law, double window, std::span<const double> t,
                     Matrix<double> positions, Matrix<double> velocities, Matrix<double> accelerations);
 

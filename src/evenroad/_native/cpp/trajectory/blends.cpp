@@ -13,27 +13,28 @@ namespace {
 /// Angle below which a corner counts as straight [rad]: the largest error of the next arc.
 constexpr double STRAIGHT = 1e-6;
 
-/// A corner within that of a reversal has no arc [rad].
+/// A corner within this angle of a reversal has no arc [rad].
 constexpr double REVERSAL = 1e-3;
 
-/// A line, and what an arc takes of a line, shorter than these shares of the whole path are none: lengths are sums
-/// along it, and have its rounding.
+/// Shares of the whole path below which a line, and an arc's part of a line, count as 0.  Lengths are sums along the
+/// path, and have its rounding.
 constexpr double NO_LINE = 1e-12, NO_ARC = 1e-11;
 
-/// Waypoints nearer to each other than this share of the whole path are one.
+/// Share of the whole path below which two waypoints are equal.
 constexpr double NO_MOTION = 1e-11;
 
-/// A waypoint so near to the straight way past it is on it: a share of the path, and one of its largest coordinate.
+/// Distance from the straight line past it below which a waypoint lies on the line: a share of the path, and one of its
+/// largest coordinate.
 constexpr double OFF_PATH = 1e-13, OFF_ROUNDING = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// Half of the angle of a corner, and the lengths that its arc takes of both motions: 0 where there is no arc.
+/// Half of the angle of a corner, and the lengths of its arc on both motions; 0 without an arc.
 struct Corner {
   double half = 0.0, cut = 0.0;
 
   bool turns() const { return half > 0.5 * STRAIGHT; }
 };
 
-/// Return half of the angle between two directions, exact for small ones, too.
+/// Return half of the angle between two directions, also exact for small angles.
 double half_angle(std::span<const double> before, std::span<const double> after) {
   double difference = 0.0, sum = 0.0;
   for (std::size_t k = 0; k < before.size(); k++) {
@@ -43,7 +44,7 @@ double half_angle(std::span<const double> before, std::span<const double> after)
   return std::atan2(std::sqrt(difference), std::sqrt(sum));
 }
 
-/// Return whether a place is within a distance of the straight way from one place to another.
+/// Return whether a point is within a distance of the straight line from one point to another.
 bool is_between(std::span<const double> point, std::span<const double> from, std::span<const double> to, double off) {
   double along = 0.0, squared = 0.0, away = 0.0;
   for (std::size_t k = 0; k < point.size(); k++) {
@@ -76,7 +77,7 @@ std::vector<std::size_t> bends_of(Matrix<const double> waypoints, double same) {
     return std::ranges::equal(waypoints[i], waypoints[j], [&](double a, double b) { return std::abs(a - b) <= gap; });
   };
   std::vector<std::size_t> bends{0};
-  // The waypoint after the last bend that may be one, too.
+  // The waypoint after the last bend, which may also be one.
   std::size_t next = 0;
   for (std::size_t i = 1; i < waypoints.rows; i++) {
     if (is_same(i, next)) continue;

@@ -1,4 +1,4 @@
-// Corners of a path, rounded by arcs of circles (Kunz and Stilman 2012, section IV).
+// Corners of a path, rounded by circular arcs (Kunz and Stilman 2012, section IV).
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace evenroad::trajectory {
 
-/// Lines and arcs, one after the other.
+/// A sequence of lines and arcs.
 ///
-/// Piece i reaches from length starts[i] to starts[i + 1].  It is a line from origin[i] along along[i] where its bend
-/// is 0, else an arc of radius 1 / bend[i] about origin[i], from the direction out[i] towards along[i].  `corners` are
-/// the lengths at inner waypoints, `stops` those at which the direction jumps.
+/// Piece i reaches from length starts[i] to starts[i + 1].  If its bend is 0, it is a line from origin[i] along
+/// along[i]. Else it is an arc of radius 1 / bend[i] about origin[i], from the direction out[i] towards along[i].
+/// `corners` are the lengths at inner waypoints, `stops` those at which the direction jumps.
 struct RoundedPath {
   std::vector<double> starts;
   OwnMatrix<double> origin, out, along;
@@ -26,14 +26,15 @@ struct RoundedPath {
   double length() const { return starts.back(); }
 };
 
-/// Return the rows of waypoints between which a path is straight: its first, those at which it bends, and its last.
+/// Return the rows of a path's first waypoint, of those at which it bends, and of its last; it is straight between
+/// them.
 ///
-/// Waypoints that differ by at most `same` in every coordinate, or by that share of the path that rounding is, are one;
-/// what the last one repeats it replaces.  There is one row where the path leads nowhere.
+/// Waypoints are equal if they differ by at most `same` in every coordinate, or by the rounding of the path.  The last
+/// waypoint replaces those that it repeats.  A path without length has one row.
 std::vector<std::size_t> bends_of(Matrix<const double> waypoints, double same);
 
-/// Round the corners of a path of two waypoints or more, no two in a row equal: the arc at waypoint i passes it within
-/// deviation[i], and replaces at most half of both motions.  Where that is 0 the path stops at its corner.
+/// Round the corners of a path of two waypoints or more, no two consecutive ones equal.  The arc at waypoint i passes
+/// it within deviation[i], and replaces at most half of both motions.  A deviation of 0 is a stop at the corner.
 RoundedPath rounded(Matrix<const double> waypoints, std::span<const double> deviation);
 
 }  // namespace evenroad::trajectory

@@ -9,23 +9,23 @@ namespace {
 
 constexpr double FLAT = 1e-12;
 
-/// A square of a speed that nothing reaches.
+/// The square of a speed that is never reached.
 constexpr double NO_LIMIT = 1e300;
 
 constexpr std::size_t NO_ROW = static_cast<std::size_t>(-1);
 
-/// A speed is lowered so often at most, and by this share at least.
+/// Largest number of reductions of a speed, and the least share of each.
 constexpr int MOST_TRIED = 64;
 constexpr double ROUNDING = 1e-12;
 
-/// What changes with the squared speed: value + rise * square.
+/// A linear function of the squared speed: value + rise * square.
 struct Line {
   double value, rise;
 
   double at(double square) const { return value + rise * square; }
 };
 
-/// The limits of acceleration along the intervals of a path, from which both passes read.
+/// The limits of acceleration along the intervals of a path, for both passes.
 class Limits {
  public:
   Limits(const Curve& curve, const Further& further, const Pushes& pushes) : curve_(curve) {
@@ -48,7 +48,7 @@ class Limits {
         const Push within =
             allowed(pushes.faster[j], pushes.slower[j], std::min(ahead, behind), std::max(ahead, behind));
         add(ahead, curve.ahead_bend(row, j), within);
-        // At the far end the square is larger by twice the step times the push.
+        // At the far end, the square is larger by twice the step times the push.
         if (!curve.is_line[row]) add(behind + bend * (2.0 * curve.steps[i]), bend, within);
       }
       if (curve.is_line[row] && rows_.back().end > rows_.back().begin) keep_least();
@@ -75,34 +75,34 @@ class Limits {
     return push;
   }
 
-  /// Return the largest squared speed at the beginning of interval i, at most `high`, from which one gets to `next`.
+  /// Return the largest squared speed at the beginning of interval i, at most `high`, from which `next` can be reached.
   ///
-  /// What is allowed, of pairs of squared speed and acceleration, is convex and holds (0, 0).  Where no acceleration is
-  /// allowed, two limits exclude each other, from a smaller speed on: that is tried next.
+  /// The set of allowed pairs of squared speed and acceleration is convex and contains (0, 0).  If no acceleration is
+  /// allowed, two limits exclude each other above a smaller speed, which is tried next.
   double highest(std::size_t i, double high, double next) const {
     double square = high;
     for (int tried = 0; tried < MOST_TRIED; tried++) {
       const double lower = lower_where_excluded(i, square, next);
       if (lower == square) return square;
-      // Else rounding alone excludes it.
+      // Otherwise only rounding excludes it.
       square = std::max(std::min(lower, square * (1.0 - ROUNDING)), 0.0);
     }
     return 0.0;
   }
 
  private:
-  /// The limits of a row: some of the sides, and the squared speed from which on a joint's bend alone is too much.
+  /// The limits of a row: the sides, and the squared speed above which the bend of a joint alone exceeds its limit.
   struct Row {
     std::size_t begin, end;
     double flat;
   };
 
-  /// What lies between two lines of one rise.
+  /// The set between two lines of equal rise.
   struct Side {
     double least, most, rise;
   };
 
-  /// What lies between two lines.
+  /// The set between two lines.
   struct Between {
     Line low, high;
   };
@@ -131,7 +131,7 @@ class Limits {
     row.end++;
   }
 
-  /// Keep the least limits alone: along a line none of them changes with the speed.
+  /// Keep only the smallest limits, because along a line none of them depends on the speed.
   void keep_least() {
     Row& row = rows_.back();
     Side& first = sides_[row.begin];
@@ -143,7 +143,7 @@ class Limits {
     sides_.resize(row.end);
   }
 
-  /// Return a smaller squared speed from which on two limits exclude each other; the same one if none do.
+  /// Return a smaller squared speed above which two limits exclude each other; the same one if none do.
   double lower_where_excluded(std::size_t i, double square, double next) const {
     const double twice = 2.0 * curve_.steps[i];
     const Row& row = rows_[curve_.row[i]];
@@ -169,7 +169,7 @@ class Limits {
   std::vector<Row> rows_;
   /// The accelerations along the path that each joint allows.
   std::vector<Side> sides_;
-  /// The further limits of each interval, of which none share a row.
+  /// The further limits of each interval; intervals do not share their rows.
   std::vector<Row> further_;
   std::vector<Between> between_;
 };

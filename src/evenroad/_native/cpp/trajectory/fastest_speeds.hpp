@@ -9,10 +9,10 @@
 
 namespace evenroad::trajectory {
 
-/// A path cut into intervals of these lengths, and of each a row: at both ends its direction and bend, by joint.
+/// A path cut into intervals of these lengths, each with a row: its direction and bend at both ends, by joint.
 ///
-/// Joint j accelerates by `direction * push + bend * square` where one drives with the square of the speed along the
-/// path and the acceleration `push` along it.  The intervals of a line share a row, which has no bend.
+/// Joint j has the acceleration `direction * push + bend * square`, with the squared speed and the acceleration `push`
+/// along the path.  The intervals of a line share a row, which has no bend.
 struct Curve {
   Matrix<const double> ahead, ahead_bend, behind, behind_bend;
   std::span<const std::size_t> row;
@@ -20,20 +20,20 @@ struct Curve {
   std::span<const double> steps;
 };
 
-/// Largest accelerations of each joint: where it speeds up, and where it slows down.
+/// Largest acceleration and deceleration of each joint.
 struct Pushes {
   std::span<const double> faster, slower;
 };
 
-/// The least and the most acceleration of a joint, or along a path; there is none where the first is larger.
+/// The least and the largest acceleration of a joint, or along a path; none is allowed if the first is larger.
 struct Push {
   double least, most;
 };
 
-/// Return the accelerations of a joint that moves in directions from `low` to `high`: one that turns back both slows
-/// down and speeds up.
+/// Return the accelerations of a joint that moves in directions from `low` to `high`; a joint that reverses has both
+/// limits.
 inline Push allowed(double faster, double slower, double low, double high) {
-  // Along an axis the directions of others are 0 but for rounding.
+  // Along an axis, the directions of others are 0 up to rounding.
   constexpr double NO_DIRECTION = 1e-9;
   if (low >= -NO_DIRECTION) return {-slower, faster};
   if (high <= NO_DIRECTION) return {-faster, slower};
@@ -52,8 +52,8 @@ struct Further {
 
 /// Return the squares of the speeds at the ends of all intervals.
 ///
-/// They are at most `ceiling`, and each joint accelerates by at most `pushes`: back for what can be stopped, on.
-/// The first is that of `ceiling`; it is less where one is too fast to keep all limits.
+/// They are at most `ceiling`, and each joint accelerates by at most `pushes`.  The first is that of `ceiling`, or less
+/// if that is too fast to keep all limits.
 std::vector<double> squared_speeds(const Curve& curve, const Further& further, std::span<const double> ceiling,
                                    const Pushes& pushes);
 

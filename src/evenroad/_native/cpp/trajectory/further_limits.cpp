@@ -20,7 +20,7 @@ using robot::Vectors;
 /// Number of directions in which a tip's acceleration is limited.
 constexpr std::size_t SIDES = 8;
 
-/// Lengths below this are none [m].
+/// Length below which a vector counts as 0 [m].
 constexpr double NO_LENGTH = 1e-12;
 
 States squared(const Vectors& a) { return dot(a, a); }
@@ -39,7 +39,7 @@ struct EightRows {
   }
 };
 
-/// Torques as shares of efforts, of what accelerates along a path, of what bends it, and of rest.
+/// Torques as shares of efforts: of acceleration along a path, of its bend, and at rest.
 class TorqueSides {
  public:
   TorqueSides(const TorqueLimits& limits, double share) : limits_(limits), states_(limits.links) {
@@ -49,7 +49,7 @@ class TorqueSides {
 
   void write(const EightRows& rows, std::size_t first, Used& used) {
     states_.move_to(rows.q);
-    // A squared speed of 1 gives velocities that are directions, and accelerations that are bends.
+    // With a squared speed of 1, velocities are directions, and accelerations are bends.
     states_.move({}, rows.velocity, {});
     copy(used.slope, first);
     states_.move(rows.velocity, rows.acceleration, {});

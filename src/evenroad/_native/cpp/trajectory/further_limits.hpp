@@ -1,4 +1,4 @@
-// Limits of torques and of a tip's speed and acceleration, as both passes along a path take them.
+// Limits of torques and of a tip's speed and acceleration, for both passes along a path.
 #pragma once
 
 #include <span>
@@ -10,17 +10,17 @@
 
 namespace evenroad::trajectory {
 
-/// Masses of links, and the largest torque of each coordinate; infinite where there is no limit.
+/// Masses of links, and the largest torque of each coordinate; infinite without a limit.
 struct TorqueLimits {
   robot::MovingLinks links;
   std::vector<double> efforts;
   robot::Vector gravity;
 
-  /// Return what the root is accelerated by, which is as good as gravity.
+  /// Return the acceleration of the root that is equivalent to gravity.
   robot::Vector upwards() const { return {-gravity[0], -gravity[1], -gravity[2]}; }
 };
 
-/// Largest speed and acceleration of a point that is fixed to a link; infinite where there is no limit.
+/// Largest speed and acceleration of a point that is fixed to a link; infinite without a limit.
 struct TipLimits {
   robot::MovingLinks links;
   std::size_t link;
@@ -28,7 +28,7 @@ struct TipLimits {
   double speed, acceleration;
 };
 
-/// Both are nullptr where there are none.
+/// Both are nullptr without limits.
 struct FurtherLimits {
   const TorqueLimits* torque;
   const TipLimits* tip;
@@ -44,8 +44,8 @@ struct PathStates {
   PathStates(std::size_t n, std::size_t dim) : positions(n, dim), directions(n, dim), bends(n, dim) {}
 };
 
-/// What accelerations along a path, its squared speeds and rest use of the limits, as shares, (n, limits) each, and the
-/// largest squares of speeds.
+/// The used shares of the limits, by accelerations along a path, by squared speeds and at rest, (n, limits) each, and
+/// the largest squared speeds.
 struct Used {
   OwnMatrix<double> slope, rise, rest;
   std::vector<double> squares;
@@ -59,7 +59,7 @@ struct Used {
   }
 };
 
-/// Return what states use of a share of the limits.
+/// Return the shares that states use of a share of the limits.
 Used used_by(const FurtherLimits& limits, PathStates states, double share);
 
 /// Largest shares of the limits of torque, and of a tip's speed and acceleration.

@@ -13,7 +13,7 @@ namespace {
 /// The end of the last sample in an interval, as a share of it: the next one begins there.
 constexpr double NEARLY_ONE = 1.0 - 1e-9;
 
-/// So many intervals are looked at before one searches.
+/// Number of intervals to step through before a binary search.
 constexpr int FEW = 4;
 
 using Doubles16 = Lanes<double, 16>;
@@ -64,7 +64,7 @@ Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const JointLi
   SharesAlong along;
   for (std::size_t i = 0; i < law.intervals(); i++) {
     if (path.bend[pieces[i]] <= 0.0) {
-      // Along a line nothing is largest but at an end.
+      // Along a line, all maxima are at an endpoint.
       if (i == 0 || pieces[i] != pieces[i - 1]) along = along_line(path, pieces[i], most);
       for (const double share : {0.0, NEARLY_ONE}) {
         const Progress progress(law, i, (law.times[i + 1] - law.times[i]) * share);
@@ -91,7 +91,7 @@ Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const JointLi
 void write_distances(Matrix<const double> waypoints, Matrix<const double> points, std::span<double> distances) {
   const std::size_t dim = points.columns;
   std::vector<double> along(dim);
-  // Sixteen points at once, one after the other in each coordinate.
+  // Sixteen points at once, consecutive in each coordinate.
   std::vector<Doubles16> some(dim);
   for (std::size_t first = 0; first < points.rows; first += LANES) {
     const std::size_t count = std::min<std::size_t>(LANES, points.rows - first);

@@ -14,16 +14,17 @@ namespace evenroad::trajectory {
 
 namespace {
 
-/// Number of intervals of a whole path, about, and the least number of an arc and of a line.
+/// Approximate number of intervals of a whole path, and the least number of an arc and of a line.
 constexpr double INTERVALS = 400.0, PER_ARC = 12.0, PER_LINE = 4.0;
 
 /// The largest angle of an interval of an arc [rad].
 constexpr double ANGLE = 0.05;
 
-/// The shortest interval of a line, as a share of the whole path: lengths are sums along it, and have its rounding.
+/// The shortest interval of a line, as a share of the whole path.  Lengths are sums along the path, and have its
+/// rounding.
 constexpr double LEAST_INTERVAL = 1e-13;
 
-/// A squared speed that is larger by this share is no larger.
+/// Share by which a squared speed may be larger and count as equal.
 constexpr double NO_FASTER = 1e-9;
 
 /// Return the square of the largest speed at a state within these velocities.
@@ -51,7 +52,7 @@ struct Sides {
   }
 };
 
-/// The largest accelerations along a line, where a robot gets faster and where it gets slower.
+/// The largest acceleration and deceleration along a line.
 struct AlongLine {
   double faster = std::numeric_limits<double>::infinity(), slower = faster;
 };
@@ -62,16 +63,16 @@ struct Speeds {
 
   void add(double length, double square) { lengths.push_back(length), squares.push_back(square); }
 
-  /// Add what lies within a line, to a length: the most acceleration, the largest speed, and the most deceleration.
+  /// Add the lengths within a line, up to a length: largest acceleration, largest speed, and largest deceleration.
   ///
-  /// No interval is shorter than the least one: a robot that gets faster within less does so more gently.
+  /// No interval is shorter than the least one; a robot that would accelerate over less does so more gently.
   void add_line(double end, double square, double ceiling, const AlongLine& most, double least) {
     const double begin = lengths.back(), before = squares.back(), length = end - begin;
     const double share = most.faster / (most.faster + most.slower);
     const double peak = std::min(ceiling, (1.0 - share) * before + share * square + 2.0 * share * most.slower * length);
     const double up = (peak - before) / (2.0 * most.faster), down = (peak - square) / (2.0 * most.slower);
     const bool rises = peak > before * (1.0 + NO_FASTER), falls = peak > square * (1.0 + NO_FASTER);
-    // Else one of both is all of the line.
+    // Otherwise one of the two is the whole line.
     if (std::min(up, down) >= least || std::max(up, down) <= length - least) {
       const double fast = begin + std::max(up, least), brakes = end - std::max(down, least);
       if (rises && end - fast >= least) add(fast, peak);
@@ -81,7 +82,7 @@ struct Speeds {
   }
 };
 
-/// Return the states at both ends of all intervals: where pieces meet there are two.
+/// Return the states at both ends of all intervals; there are two where pieces meet.
 PathStates states_of(const RoundedPath& path, const Grid& grid) {
   PathStates states(grid.pieces.size() + path.pieces(), path.dim());
   for (std::size_t i = 0; i < grid.lengths.size(); i++) {
@@ -135,7 +136,7 @@ TimeLaw fastest(const RoundedPath& path, Grid grid, const JointLimits& most, con
   const std::vector<std::size_t>& pieces = grid.pieces;
   const bool is_lean = grid.is_lean;
   const std::size_t intervals = pieces.size();
-  // The intervals of a line share a row: they are most of all.
+  // The intervals of a line share a row; most intervals are of lines.
   std::vector<std::size_t> row(intervals);
   std::size_t rows = 0;
   for (std::size_t i = 0; i < intervals; i++) {

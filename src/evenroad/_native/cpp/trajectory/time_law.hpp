@@ -1,4 +1,4 @@
-// When one is where along a path of lines and arcs.
+// The time law along a path of lines and arcs.
 #pragma once
 
 #include <algorithm>
@@ -13,25 +13,25 @@
 
 namespace evenroad::trajectory {
 
-/// Length along a path over time: the acceleration along it is constant between two of the times.
+/// Length along a path over time, with constant acceleration between two of the times.
 struct TimeLaw {
   std::vector<double> times, lengths, speeds, accelerations;
 
   std::size_t intervals() const { return accelerations.size(); }
 };
 
-/// Largest velocity of each coordinate, its largest acceleration where it speeds up, and that where it slows down.
+/// Largest velocity, acceleration and deceleration of each coordinate.
 struct JointLimits {
   std::vector<double> velocity, acceleration, deceleration;
 
-  /// Return the share of what is allowed that an acceleration uses of a coordinate in directions from `low` to `high`.
+  /// Return the used share of a coordinate's limit by an acceleration, in directions from `low` to `high`.
   double share(std::size_t k, double push, double low, double high) const {
     const Push within = allowed(acceleration[k], deceleration[k], low, high);
     return push / (push < 0.0 ? within.least : within.most);
   }
 };
 
-/// Lengths between which the acceleration is constant, and the piece of each interval; in a lean grid each line is one
+/// Lengths between which the acceleration is constant, and the piece of each interval.  In a lean grid each line is one
 /// interval, to be cut where the acceleration changes, and arcs have few.
 struct Grid {
   std::vector<double> lengths;
@@ -40,18 +40,17 @@ struct Grid {
 };
 Grid grid_of(const RoundedPath& path, bool is_lean);
 
-/// Limits along a path: the largest square of the speed, speeds at start and goal, and further limits, of which a share
-/// is used.
+/// Limits along a path: the largest squared speed, speeds at start and goal, and further limits with their used share.
 struct PathLimits {
   double highest, start = 0.0, goal = 0.0;
   FurtherLimits further;
   double share = 1.0;
 };
 
-/// Return the fastest law, at rest where the direction jumps; it is empty where further limits exclude rest.
+/// Return the fastest law, at rest where the direction jumps; it is empty if further limits exclude rest.
 TimeLaw fastest(const RoundedPath& path, Grid grid, const JointLimits& most, const PathLimits& within);
 
-/// Positions, velocities and accelerations at times; before and after the path one is at rest.
+/// Positions, velocities and accelerations at times; at rest before and after the path.
 class StatesAt {
  public:
   StatesAt(const RoundedPath& path, const TimeLaw& law);
@@ -66,7 +65,7 @@ class StatesAt {
   std::vector<std::size_t> pieces_;
 };
 
-/// Largest shares of what is allowed.
+/// Largest used shares of the limits.
 struct Shares {
   double velocity = 0.0, acceleration = 0.0;
 };
@@ -87,7 +86,7 @@ struct SharesAlong {
 /// Return the largest shares at a number of times, from 2 on, in each interval.
 Shares largest_shares(const RoundedPath& path, const TimeLaw& law, const JointLimits& most, std::size_t samples);
 
-/// Write how far each point is from straight motions between waypoints.
+/// Write the distance of each point from straight motions between waypoints.
 void write_distances(Matrix<const double> waypoints, Matrix<const double> points, std::span<double> distances);
 
 }  // namespace evenroad::trajectory

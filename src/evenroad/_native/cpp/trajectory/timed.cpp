@@ -11,31 +11,31 @@ namespace evenroad::trajectory {
 
 namespace {
 
-/// Share of the acceleration limits used: between two grid points an arc may take a little more.
+/// Used share of the acceleration limits, because an arc may need slightly more between two grid points.
 constexpr double WITHIN = 1.0 - 5e-4;
 
-/// The same of further limits at first, and the share of what would do that is used where there is more.
+/// First used share of further limits, and the extra factor of a reduction.
 constexpr double WITHIN_FURTHER = 1.0 - 1e-3, LESS = 1.0 - 1e-3;
 
-/// Number of times that less is used.
+/// Number of reductions.
 constexpr int TRIES = 8;
 
-/// Number of times that a corner near a start or a goal in motion is halved; then the robot stops there.
+/// Number of times that a corner near a start or goal in motion is halved before the robot stops there.
 constexpr int HALVINGS = 5;
 
-/// Squares of speeds that a corner allows, as multiples of an estimate from below, that are tried.
+/// Squared speeds at a corner to try, as multiples of a lower estimate.
 constexpr double PROBABLY = 2.0;
 
-/// Number of times in a step at which further limits are looked at.
+/// Number of times per step at which further limits are measured.
 constexpr std::size_t PER_STEP = 4;
 
-/// Shares by which a speed may be less than wanted, and a bound more than is allowed.
+/// Shares by which a speed may be less than wanted, and a bound more than allowed.
 constexpr double NO_SLOWER = 1e-9, NO_MORE = 1e-12;
 
-/// Number of parts of an interval at whose ends is looked what an arc uses.
+/// Number of parts of an arc's interval at whose ends the used shares are computed.
 constexpr int PARTS = 2;
 
-/// A duration may be so much more than a whole number of steps: rounding [steps].
+/// Excess of a duration over a whole number of steps that counts as rounding [steps].
 constexpr double SAME = 1e-9;
 
 /// Return the largest shares that speed 1 and acceleration 1 use in any direction of a piece's plane.
@@ -49,8 +49,8 @@ SharesAlong of_plane(const RoundedPath& path, std::size_t piece, const JointLimi
 
 /// Return bounds of the shares that an interval uses at any time; `plane` are those of its piece.
 ///
-/// Along a line the ends use most.  Along an arc a share between two places is at most that at one of them and an
-/// eighth of the squared angle between them times the largest second derivative.  The squared speed is linear there.
+/// Along a line the endpoints use most.  Along an arc, the share between two points is at most that at one of them plus
+/// an eighth of the squared angle between them times the largest second derivative.  The squared speed is linear there.
 Shares used_in(const RoundedPath& path, const TimeLaw& law, std::size_t i, std::size_t piece, const JointLimits& most,
                const SharesAlong& plane) {
   const double push = law.accelerations[i], bend = path.bend[piece];
@@ -108,7 +108,7 @@ double deviation_of(const RoundedPath& path) {
   return largest;
 }
 
-/// Return how far along its path a law is at times that rise, from 0 to its duration.
+/// Return the lengths of a law along its path at ascending times, from 0 to its duration.
 std::vector<double> lengths_at(const TimeLaw& law, std::span<const double> times) {
   std::vector<double> lengths;
   std::size_t i = 0;
@@ -119,7 +119,7 @@ std::vector<double> lengths_at(const TimeLaw& law, std::span<const double> times
   return lengths;
 }
 
-/// A law with the limits that it was made within, of which less is used where it takes more between grid points.
+/// A law with its limits, whose used share is reduced if it exceeds them between grid points.
 class Tried {
  public:
   Tried(const RoundedPath& path, const JointLimits& most, const PathLimits& within)
@@ -130,7 +130,7 @@ class Tried {
     }
   }
 
-  /// Make the law; it is empty where torques cannot hold the robot.
+  /// Make the law; it is empty if torques cannot hold the robot.
   void make() {
     const bool is_lean = !within_.further.torque && !within_.further.tip;
     law_ = fastest(path_, grid_of(path_, is_lean), used_, within_);
@@ -141,7 +141,7 @@ class Tried {
   /// Return bounds of the shares that it uses at any time.
   Shares used() const { return used_at_all_times(path_, law_, most_); }
 
-  /// Use less of velocities and accelerations, or of further limits, than was used by these shares.
+  /// Reduce the used share of velocities and accelerations, or of further limits, according to these shares.
   void use_less(const Shares& used) {
     for (double& each : used_.velocity) each *= LESS / std::max(used.velocity, 1.0);
     for (auto* row : {&used_.acceleration, &used_.deceleration}) {
@@ -171,7 +171,7 @@ FurtherShares further_in(const RoundedPath& path, const TimeLaw& law, const Furt
   return further_shares(limits, q, rates, pushes);
 }
 
-/// Return the fastest trajectory with corners rounded so.
+/// Return the fastest trajectory with these rounded corners.
 Timed timed_once(Matrix<const double> waypoints, std::span<const double> deviation, const JointLimits& most,
                  const PathLimits& within, const Steps& steps) {
   const RoundedPath path = rounded(waypoints, deviation);
@@ -233,7 +233,7 @@ Timed timed_once(Matrix<const double> waypoints, std::span<const double> deviati
   return made;
 }
 
-/// Return whether a robot with this speed along the first of two lines probably gets slow enough for a corner.
+/// Return whether a robot with this speed along the first of two lines can probably slow down enough for a corner.
 bool is_slow_enough(Matrix<const double> lines, double deviation, double speed, std::span<const double> acceleration) {
   const double within[] = {0.0, deviation, 0.0};
   const RoundedPath path = rounded(lines, within);
@@ -248,8 +248,8 @@ bool is_slow_enough(Matrix<const double> lines, double deviation, double speed, 
   return speed * speed - 2.0 * brakes * path.starts[arc] <= PROBABLY * allowed;
 }
 
-/// Round a corner next to a start or a goal in motion less, until it probably can be driven; then see how often it was
-/// halved.
+/// Halve the rounding of a corner next to a start or goal in motion until it can probably be driven; return the number
+/// of halvings.
 int rounded_less(Matrix<const double> waypoints, bool from_goal, double speed, std::span<const double> acceleration,
                  double& deviation) {
   OwnMatrix<double> lines(3, waypoints.columns);
@@ -285,7 +285,7 @@ Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, c
       made.deviations = std::move(deviations);
       return made;
     }
-    // A corner that is too near to a start or a goal in motion is too round; at last the robot stops there.
+    // A corner too near to a start or goal in motion is rounded too much; in the end the robot stops there.
     const auto halve = [](double& own, int& halved) { own *= halved++ < HALVINGS ? 0.5 : 0.0; };
     if (start) halve(deviations[1], at_start);
     if (goal) halve(deviations[waypoints.rows - 2], at_goal);

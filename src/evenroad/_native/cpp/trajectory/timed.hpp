@@ -17,16 +17,16 @@ struct Steps {
   std::size_t most;
 };
 
-/// What became of a trajectory.
+/// The outcome of a trajectory.
 enum class Outcome : std::uint8_t {
   MADE,
   TOO_LONG,    // it takes too many steps
   TOO_HEAVY,   // torques cannot hold the robot still
-  TOO_FAST,    // at start or goal it is to be faster than the limits let it be
-  NOT_WITHIN,  // no share of the limits was found with which all are kept
+  TOO_FAST,    // the velocity at start or goal exceeds the limits
+  NOT_WITHIN,  // no used share was found with which all limits are kept
 };
 
-/// States at all steps, and how far along the path each is; none where it was not made.
+/// States at all steps, and their lengths along the path; none if it was not made.
 struct Timed {
   Outcome outcome;
   OwnMatrix<double> positions, velocities, accelerations;
@@ -41,16 +41,17 @@ struct Timed {
   Shares highest;
   /// Largest shares of further limits, at some times in each step.
   FurtherShares further;
-  /// Whether it is slower than wanted at start and goal.
+  /// Whether it is slower than wanted at start or goal.
   bool is_slower_at_start = false, is_slower_at_goal = false;
-  /// Within which its corners are rounded.
+  /// Deviations of its rounded corners.
   std::vector<double> deviations{};
 };
 
 /// Return the fastest trajectory along a path whose corners are rounded within deviations, or less near start and goal
-/// where it is too fast there.
+/// if it is too fast there.
 ///
-/// From rest to rest it ends on a whole step; else its steps are a little shorter, since it may not be slowed down.
+/// From rest to rest it ends on a whole step.  Otherwise its steps are slightly shorter, because it must not be slowed
+/// down.
 Timed timed(Matrix<const double> waypoints, std::span<const double> deviation, const JointLimits& most,
             const PathLimits& within, const Steps& steps);
 

@@ -1,10 +1,9 @@
-// The farthest that a point of a cell can be from a square (dc, dr) cells away is hypot(dc, dr): where that is less
-// than the radius for the nearest occupied cell, the cell is blocked.  The nearest is hypot(max(dc - 1, 0), max(dr - 1,
-// 0)), the distance from the obstacles grown by one cell all round: where that is at least the radius, the cell is
-// free.
+// A point of a cell is at most hypot(dc, dr) from a square that is (dc, dr) cells away.  If that is less than the
+// radius for the nearest occupied cell, the cell is blocked.  The point is at least hypot(max(dc - 1, 0), max(dr - 1,
+// 0)) away, the distance from obstacles that are grown by one cell.  If that is at least the radius, the cell is free.
 //
-// Obstacles that are farther than all of this matters count as just so far: what is known of a square of cells depends
-// on what lies near it.
+// Distances of obstacles are clipped where they no longer matter, so the states of a square of cells depend only on its
+// surroundings.
 #include "world/cell_states.hpp"
 
 #include <algorithm>
@@ -15,12 +14,12 @@ namespace evenroad::world {
 
 namespace {
 
-/// Largest room beyond the radius that a state tells; motions leap over so much.
+/// Largest distance beyond the radius that a state stores; motions can skip that distance.
 constexpr int LARGEST_SLACK = 32;
-/// Farther than this no obstacle is looked for: its square, twice, is a number of 32 bits.
+/// Largest distance of obstacles to consider; twice its square is a number of 32 bits.
 constexpr std::int64_t FARTHEST = 32'000;
 
-/// The part of a grid around a square: what its states depend on.
+/// The part of a grid around a square on which its states depend.
 struct Around {
   std::int64_t top, bottom, left, right, reach;
 
@@ -44,7 +43,7 @@ bool is_all_free(const Occupancy& occupancy, const Around& around) {
   return seen == 0;
 }
 
-/// Count a row further in the runs of free cells that end at it, one a column.
+/// Extend the runs of free cells that end at a row by this row, one per column.
 void count_row(const Occupancy& occupancy, const Around& around, std::int64_t row, std::vector<std::int32_t>& runs) {
   const auto most = static_cast<std::int32_t>(around.reach);
   for (std::int64_t column = around.left; column < around.right; column += 64) {
@@ -77,7 +76,7 @@ std::unique_ptr<std::uint8_t[]> classify(const Occupancy& occupancy, double radi
   const std::int64_t last_row = std::min(square.top + side, occupancy.rows() - 1);
   const std::int64_t last_column = std::min(square.left + side, occupancy.columns() - 1);
   if (is_all_free(occupancy, around)) {
-    // Not at the grid's border, where the ring is.
+    // Not at the grid's border, which is the ring.
     std::fill(cells.get(), cells.get() + side * side, static_cast<std::uint8_t>(FREE + LARGEST_SLACK));
     return cells;
   }

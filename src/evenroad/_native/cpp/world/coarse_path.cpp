@@ -1,4 +1,4 @@
-// A* over the portals; the tiles are made when the search comes to them.
+// A* over the portals; tiles are made when the search reaches them.
 #include "world/coarse_path.hpp"
 
 #include <algorithm>
@@ -74,7 +74,7 @@ class CoarseSearch {
     return least;
   }
 
-  /// Go to all portals of a part of a tile, and to goals in it.
+  /// Expand all portals of a part of a tile, and goals in it.
   void leave(std::int64_t number, std::int16_t part, std::int32_t from, Cell at, double spent) {
     for (std::size_t goal = 0; goal < goals_.size(); goal++) {
       if (goal_parts_[goal] != part || tiles_.tile_of(goals_[goal]) != number) continue;
@@ -97,7 +97,7 @@ class CoarseSearch {
     }
   }
 
-  /// Return the number of the first portal of a border, of which the runs are the same on both sides.
+  /// Return the number of the first portal of a border; its runs are the same on both sides.
   std::int32_t first_portal(std::int64_t number, int border, const std::vector<BorderRun>& runs) {
     const bool is_own = border >= BOTTOM;
     const std::int64_t owner = is_own ? number : tiles_.beyond(number, border);
@@ -123,7 +123,7 @@ class CoarseSearch {
   CoarseTiles tiles_;
   std::span<const Cell> goals_;
   std::vector<std::int16_t> goal_parts_;
-  /// The first portal of the bottom and right borders of each tile, -1 before they are looked at.
+  /// The first portal of the bottom and right borders of each tile, -1 before they are visited.
   std::vector<std::int32_t> first_;
   std::vector<Portal> portals_;
   std::priority_queue<Waiting> queue_;

@@ -1,4 +1,4 @@
-// A tile is opened 64 cells at once, by bits; its parts grow along rows in six steps a row.
+// Open cells of a tile are computed 64 at once, as bits; its parts grow along rows in six steps per row.
 #include "world/coarse_tiles.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace evenroad::world {
 
 namespace {
 
-/// How far to the sides the squares of a row reach that close a cell, by how many rows they are away; -1 where none do.
+/// Largest column distance of a square that closes a cell, by row distance; -1 if none does.
 std::vector<std::int64_t> reaches(double radius, Open open) {
   std::vector<std::int64_t> reaches;
   const std::int64_t less = open == Open::SURELY_FREE ? 1 : 0;
@@ -25,7 +25,7 @@ std::vector<std::int64_t> reaches(double radius, Open open) {
   return reaches;
 }
 
-/// Return the bits of a mask that bits hang together with along a row.
+/// Return the bits of a mask that are connected to some bits along a row.
 std::uint64_t spread(std::uint64_t bits, std::uint64_t mask) {
   std::uint64_t up = mask, down = mask, left = bits, right = bits;
   for (int by = 1; by < TILE_SIDE; by *= 2) {
@@ -35,7 +35,7 @@ std::uint64_t spread(std::uint64_t bits, std::uint64_t mask) {
   return left | right;
 }
 
-/// Take what hangs together with one bit out of a tile.
+/// Remove the part that is connected to one bit from a tile.
 TileBits take_part(TileBits& open, std::int64_t row, std::uint64_t bit) {
   TileBits part{};
   part[row] = spread(bit, open[row]);
@@ -124,7 +124,7 @@ const CoarseTile& CoarseTiles::divide(std::int64_t number) {
 
 std::int16_t CoarseTiles::part_at(Cell at) { return part_of(divided(tile_of(at)), inside(at)); }
 
-/// Return a tile of which the open cells are known.
+/// Return a tile with known open cells.
 CoarseTile& CoarseTiles::opened(std::int64_t number) {
   std::unique_ptr<CoarseTile>& tile = tiles_[number];
   if (tile != nullptr) return *tile;

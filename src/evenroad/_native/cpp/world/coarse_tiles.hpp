@@ -1,5 +1,5 @@
-// The square tiles of a map, each made when somebody looks at it: its open cells, what hangs together inside, and where
-// it is open to its neighbours.
+// The square tiles of a map, each made on first use: its open cells, its connected parts, and its openings to
+// neighbours.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace evenroad::world {
 
-/// Number of bits of a row or column number that count inside of a tile: a row of one is a word.
+/// Number of bits of a row or column number within a tile: a row of a tile is a word.
 constexpr int COARSE_SHIFT = 6;
 constexpr std::int64_t TILE_SIDE = std::int64_t{1} << COARSE_SHIFT;
 /// Largest reach of a disk, in cells.
 constexpr std::int64_t MOST_REACH = 60;
 
-/// Which cells of a disk count as open: those that are surely free, or all that are not surely blocked.
+/// The cells that count as open for a disk: free ones, or all that are not blocked.
 enum class Open : std::uint8_t { SURELY_FREE, NOT_BLOCKED };
 
 /// A cell of the padded grid.
@@ -25,12 +25,12 @@ struct Cell {
   std::int32_t row, column;
 };
 
-/// The cells of a tile, a word a row, its lowest bit the first column.
+/// The cells of a tile, one word per row; the lowest bit is the first column.
 using TileBits = std::array<std::uint64_t, TILE_SIDE>;
 
 enum Border : std::uint8_t { TOP, LEFT, BOTTOM, RIGHT, BORDERS };
 
-/// Cells of a border, from `first` to `last`, which are open on both sides, and what they hang together with inside.
+/// Cells of a border, from `first` to `last`, that are open on both sides, and the connected part inside.
 struct BorderRun {
   std::uint8_t first, last;
   std::int16_t part;
@@ -39,7 +39,7 @@ struct BorderRun {
 struct CoarseTile {
   TileBits open;
   bool is_divided = false;
-  /// What hangs together inside, and the runs of each border.
+  /// The connected parts inside, and the runs of each border.
   std::vector<TileBits> parts;
   std::array<std::vector<BorderRun>, BORDERS> runs;
 };
@@ -52,7 +52,7 @@ class CoarseTiles {
   std::int64_t tile_of(Cell at) const { return (at.row >> COARSE_SHIFT) * wide_ + (at.column >> COARSE_SHIFT); }
   std::int64_t count() const { return high_ * wide_; }
 
-  /// Return the tile behind a border, -1 where the map ends.
+  /// Return the tile behind a border, -1 if the map ends there.
   std::int64_t beyond(std::int64_t tile, int border) const;
 
   /// Return the cell in the middle of a run of a border of a tile, on its side.

@@ -13,7 +13,7 @@ namespace {
 /// Cells between two looks at the clock.
 constexpr int CELLS_A_LOOK = 1024;
 
-/// Which piece of a cell each of its parts belongs to, -1 of none.
+/// The piece of a cell that each of its parts belongs to, -1 for none.
 using Pieces = std::array<std::array<std::int16_t, PARTS>, PARTS>;
 
 bool is_open(const Opened& opened, int row, int column) { return (opened[row] >> column & 1) != 0; }
@@ -42,8 +42,8 @@ int pieces_of(const Opened& opened, Pieces& pieces) {
   return count;
 }
 
-/// Return the distance from the middle of a square of parts of a cell to the nearest obstacle; where that is beyond the
-/// radius, any distance that is.
+/// Return the distance from the middle of a square of parts of a cell to the nearest obstacle, or any distance beyond
+/// the radius if it is farther.
 double distance(const Disk& disk, std::int64_t row, std::int64_t column, int top, int left, int size) {
   const Point middle{static_cast<double>(column) + (left + 0.5 * size) / PARTS,
                      static_cast<double>(row) + (top + 0.5 * size) / PARTS};
@@ -71,7 +71,7 @@ Opened open_parts(const Disk& disk, std::int64_t row, std::int64_t column) {
   return opened;
 }
 
-/// Join two places, -1 for none, of which both may have a free point.
+/// Join two cells or pieces, -1 for none, that may both have a free point.
 void join(std::vector<std::int32_t>& parent, std::int64_t a, std::int64_t b) {
   if (a < 0 || b < 0 || parent[a] < 0 || parent[b] < 0) return;
   unite(parent, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
@@ -82,7 +82,7 @@ void join(std::vector<std::int32_t>& parent, std::int64_t a, std::int64_t b) {
 Components::Components(const Disk& disk) : cells_(disk.rows(), disk.columns()), number_(disk.rows(), disk.columns()) {
   number_gates(disk);
   const std::size_t cells = cells_.values.size();
-  // Cells first, and behind them the pieces of those at gates.
+  // Cells come first, followed by the pieces of those at gates.
   std::vector<std::int32_t> parent(cells + first_.back(), -1);
   ClockWatch clock(CELLS_A_LOOK);
   for (std::size_t cell = 0; cell < cells; cell++) {
@@ -94,7 +94,7 @@ Components::Components(const Disk& disk) : cells_(disk.rows(), disk.columns()), 
   }
   for (std::size_t piece = cells; piece < parent.size(); piece++) parent[piece] = static_cast<std::int32_t>(piece);
   unite_neighbours(parent);
-  // A parent never comes after its child: whose is done is final.
+  // A parent never comes after its child, so its entry is final.
   for (std::int32_t& each : parent) each = each < 0 ? each : parent[each];
   for (std::int32_t& each : parent) each++;
   std::copy(parent.begin(), parent.begin() + static_cast<std::ptrdiff_t>(cells), cells_.values.begin());

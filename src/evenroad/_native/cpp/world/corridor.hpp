@@ -1,4 +1,4 @@
-// Tiles of the coarse level that a search of cells stays in.
+// The tiles of the coarse level in which a search of cells stays.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class Corridor {
   /// Begin another corridor, which has no tile yet.
   void clear() { number_++; }
 
-  /// Add the tile of a cell, and those around it.
+  /// Add the tile of a cell and its neighbours.
   void add(Cell at) {
     const std::int64_t row = at.row >> COARSE_SHIFT, column = at.column >> COARSE_SHIFT;
     for (std::int64_t r = std::max<std::int64_t>(row - 1, 0); r <= std::min(row + 1, high_ - 1); r++) {

@@ -1,5 +1,5 @@
-// Seen from a point of cell (row, column), only one or two squares of each row can be the nearest: the one in the same
-// column if it is occupied, else the first to the left and the first to the right.
+// For a point of cell (row, column), only one or two squares of each row can be the nearest: the one in the same column
+// if it is occupied, else the first to the left and the first to the right.
 #include "world/disk.hpp"
 
 #include <algorithm>
@@ -11,13 +11,13 @@ namespace evenroad::world {
 
 namespace {
 
-/// What touches to the last bit is free, whatever the products round to: a disk in a passage just as wide.
+/// Slack of products, so that a disk in a passage of exactly its width is free for any rounding.
 constexpr double TOUCHING = 1.0 - 1e-15;
 
-/// Say whether a corner at (x, y) from a segment's start is nearer than the radius to its inside.
+/// Return whether a corner at (x, y) from a segment's start is nearer than the radius to an inner point of the segment.
 ///
-/// Only a foot strictly between the ends counts; its squared distance is cross^2 / length^2, compared without dividing:
-/// `limit` is radius^2 * length^2.
+/// Only a foot strictly between the endpoints counts.  Its squared distance is cross^2 / length^2, compared without
+/// division: `limit` is radius^2 * length^2.
 bool is_too_close(Point corner, Point by, double squared_length, double limit) {
   const double along = corner.x * by.x + corner.y * by.y;
   if (along <= 0.0 || along >= squared_length) return false;
@@ -58,14 +58,14 @@ double Disk::squared_gap(Point at, std::int64_t row, std::int64_t column, std::i
 bool Disk::is_motion_free(Point from, Point to) const {
   const Point a = frame_.to_padded(from), b = frame_.to_padded(to);
   if (!is_free(a) || !is_free(b)) return false;
-  // One direction for both orders: a motion and its reverse round alike.
+  // One direction for both orders, so that a motion and its reverse round in the same way.
   return b.x < a.x || (b.x == a.x && b.y < a.y) ? is_segment_free(b, a) : is_segment_free(a, b);
 }
 
-// Follow the segment (from.x <= to.x), whose ends are free, cell by cell; parameter t runs from 0 to 1.  Every piece of
-// the segment from one t to the next lies in the closed cell that is looked at, and the pieces leave no gap.  Where the
-// segment comes nearest to a square that it does not meet, either the segment ends, which was tested as a point, or the
-// square has a corner.  So corners are all that an undecided cell depends on.
+// Follow the segment (from.x <= to.x), with free endpoints, cell by cell; parameter t runs from 0 to 1.  Every piece of
+// the segment from one t to the next lies in the current closed cell, and the pieces leave no gap.  The nearest point
+// to a square that the segment does not cross is either an endpoint, which was tested before, or the nearest point to a
+// corner of the square.  So an undecided cell depends only on corners.
 bool Disk::is_segment_free(Point from, Point to) const {
   const Point by{to.x - from.x, to.y - from.y};
   const double squared_length = by.x * by.x + by.y * by.y;
@@ -83,10 +83,10 @@ bool Disk::is_segment_free(Point from, Point to) const {
     if (state == UNDECIDED && passes_a_corner(row, column, from, by, squared_length)) return false;
     const double next_column = crosses_columns ? (static_cast<double>(column + 1) - from.x) * per_column : 2.0;
     const double next_row = crosses_rows ? (static_cast<double>(row + next_line) - from.y) * per_row : 2.0;
-    // Rounding may put a grid line a hair before the place that a leap ended at: never go back.
+    // Rounding may put a grid line slightly before the end of a skip; never go back.
     t = std::max(t, std::min(next_column, next_row));
     if (state > FREE) {
-      // The slack holds at the point of leaving, so as much of the motion beyond it is free as well.
+      // The slack holds at the point of leaving, so the motion is free for this distance beyond it.
       t += static_cast<double>(state - FREE) * per_pixel;
       column = static_cast<std::int64_t>(from.x + t * by.x), row = static_cast<std::int64_t>(from.y + t * by.y);
     } else if (next_column <= next_row) {
@@ -98,8 +98,8 @@ bool Disk::is_segment_free(Point from, Point to) const {
   }
 }
 
-// A square in the cell's own row or column faces it with a side: where that ends, a cell of the next row or column that
-// the segment goes to sees the corner.
+// A square in the cell's row or column faces it with a side.  If the side ends, the next cell of the segment tests its
+// corner.
 bool Disk::passes_a_corner(std::int64_t row, std::int64_t column, Point from, Point by, double squared_length) const {
   const double limit = radius_ * radius_ * squared_length * TOUCHING;
   const std::int64_t near = reach(), last = std::min(row + near, rows() - 1);

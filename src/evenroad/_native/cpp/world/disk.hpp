@@ -1,6 +1,6 @@
 // A disk of one radius on a grid map: exact tests of its positions and motions.
 //
-// All is in the pixel plane of the padded grid (see cell_states), whose coordinates are one larger than the map's.
+// Coordinates are in the pixel plane of the padded grid (see cell_states); they are one larger than the map's.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,12 @@ struct Point {
 
 inline double distance(Point a, Point b) { return std::hypot(b.x - a.x, b.y - a.y); }
 
-/// Where the pixels of a map lie in the plane: the origin, the map directions of increasing column and row, the side of
-/// a pixel, and the origin's row.
+/// The frame of a map: the origin, the map directions of increasing column and row, the side of a pixel, and the
+/// origin's row.
 struct Frame {
   double x, y, column_x, column_y, row_x, row_y, scale, first_row;
 
-  /// Subtracting first and dividing last keeps round numbers round: a disk that just touches is seen to just touch.
+  /// Subtracting first and dividing last keeps round numbers exact, so that a disk that just touches is free.
   Point to_padded(Point map) const {
     const double dx = map.x - x, dy = map.y - y;
     const double column = (column_x * dx + column_y * dy) / scale;
@@ -36,10 +36,10 @@ struct Frame {
   }
 };
 
-/// What is known of one disk on one map, of each part from when it is first needed; what it says never changes.
+/// Data of one disk on one map; each part is computed when it is first needed, and results never change.
 class Disk {
  public:
-  /// Take the occupied cells of a map; the radius is in pixels.
+  /// Make it from the occupied cells of a map; the radius is in pixels.
   Disk(Matrix<const bool> map, const Frame& frame, double radius)
       : frame_(frame),
         radius_(radius),
@@ -62,7 +62,7 @@ class Disk {
     return gates_.at(row, column, [this](const Square& square) { return gates_of(square); }) != 0;
   }
 
-  /// Say whether padded coordinates are inside of the map; on its border the distance to the outside is 0.
+  /// Return whether padded coordinates are inside the map; on its border the distance to the outside is 0.
   bool is_inside(Point at) const {
     return 1.0 < at.x && at.x < static_cast<double>(columns()) - 1.0 && 1.0 < at.y &&
            at.y < static_cast<double>(rows()) - 1.0;
@@ -73,15 +73,15 @@ class Disk {
   /// Say whether the disk can move straight between two map points.
   bool is_motion_free(Point from, Point to) const;
 
-  /// Return the squared distance from a point of a cell to the obstacles of rows and columns within `reach`, or more
-  /// than its square; once one is found nearer than `enough`, the nearest is not looked for.
+  /// Return the squared distance from a point of a cell to the obstacles in rows and columns within `reach`, or more
+  /// than the square of `reach`.  The search stops at an obstacle nearer than `enough`.
   double squared_gap(Point at, std::int64_t row, std::int64_t column, std::int64_t reach, double enough) const;
   /// Rows and columns beyond this many do not matter.
   std::int64_t reach() const { return reach_; }
 
  private:
-  /// Return how many bits of a row or column number count inside of a tile: so large that what lies around a tile, on
-  /// which it depends, is not much more than itself.
+  /// Return the number of bits of a row or column number within a tile.  Tiles are so large that their surroundings, on
+  /// which they depend, are not much larger.
   int shift() const {
     int shift = 7;
     while (shift < 14 && std::int64_t{1} << shift < std::min(2 * reach_, std::max(rows(), columns()))) shift++;

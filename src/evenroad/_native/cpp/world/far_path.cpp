@@ -1,4 +1,4 @@
-// Far goals: the way over the coarse level is followed in legs, each a search of cells between two portals.
+// Paths to far goals: the path over the coarse level is followed in legs, each a search of cells between two portals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,12 +11,11 @@ namespace evenroad::world {
 
 namespace {
 
-/// Pixels from which on a goal is far: to search all cells takes longer.
+/// Distance from which a goal counts as far, because a search of all cells takes longer [pixels].
 constexpr double FAR = 1000.0;
 /// Least number of portals of a leg.
 constexpr std::size_t LEG = 8;
-/// A way through cells that are not surely free is tried where it has at most this share of the surely free one's
-/// length.
+/// Largest length of a path through undecided cells that is tried, as a share of the path through free cells.
 constexpr double SHORTER = 0.97;
 
 Cell cell_of(const Disk& disk, Point map) {
@@ -32,13 +31,13 @@ bool is_far(const Disk& disk, Point start, std::span<const Point> goals) {
          });
 }
 
-/// Follows ways, and adds up what that costs.
+/// Follows coarse paths, and sums their costs.
 class Follower {
  public:
   Follower(const Disk& disk, Point start, std::span<const Point> goals, std::int64_t most)
       : disk_(disk), start_(start), goals_(goals), most_(most), corridor_(disk) {}
 
-  /// Return the path along a way; without points where it leads through a gap that is too narrow.
+  /// Return the path along a coarse path; without points if that leads through a gap that is too narrow.
   LatticePath follow(const CoarsePath& coarse) {
     const Point goal = goals_[coarse.goal];
     found_.points = {start_};
@@ -62,7 +61,7 @@ class Follower {
     return found;
   }
 
-  /// No path, and what it cost to look for one.
+  /// No path, and the cost of the search.
   LatticePath none() const { return {{}, -1, found_.expanded, found_.motions}; }
   std::int64_t left() const { return most_ - found_.motions; }
 
@@ -71,14 +70,14 @@ class Follower {
     return disk_.frame().to_map({static_cast<double>(at.column) + 0.5, static_cast<double>(at.row) + 0.5});
   }
 
-  /// Return the portal at which a leg ends, one that surely is free; the number of portals at the goal.
+  /// Return the portal at which a leg ends, which is free; the number of portals at the goal.
   std::size_t end_of_leg(const CoarsePath& coarse, std::size_t begin) const {
     std::size_t end = begin + LEG - 1;
     while (end < coarse.portals.size() && disk_.cell(coarse.portals[end].row, coarse.portals[end].column) < FREE) end++;
     return end + LEG / 2 < coarse.portals.size() ? end : coarse.portals.size();
   }
 
-  /// Go on to a place in the corridor; say whether there is a path.
+  /// Continue to a point in the corridor; return whether there is a path.
   bool reach(Point to) {
     const std::array<Point, 1> goal = {to};
     const LatticePath leg = search_cells(disk_, found_.points.back(), goal, left(), &corridor_);

@@ -13,16 +13,14 @@ namespace {
 
 /// Number of cells around a near contact of two components that belong to the gate.
 constexpr std::int64_t AROUND = 3;
-/// An undecided cell this many steps from surely free ones is no strip along a wall.
+/// Number of steps from free cells at which an undecided cell is not part of a strip along a wall.
 constexpr std::int32_t DEEP = 3;
-/// Number of cells around a square, in which free cells that hang together are one component.
+/// Number of cells around a square in which connected free cells are one component.
 constexpr std::int64_t NEAR = 24;
-/// A cell with at least this state has no neighbour that is not surely free: two corners of cells that touch are at
-/// most the square root of two apart.
+/// State from which all neighbours of a cell are free: points of two neighbours can be the square root of two apart.
 constexpr std::uint8_t WITHIN = FREE + 2;
 
-/// Which component of surely free cells near a square reaches each cell first, and in how many steps over undecided
-/// ones.
+/// The component of free cells near a square that reaches each cell first, and the number of steps over undecided ones.
 class Owners {
  public:
   Owners(const Disk& disk, const Square& square)
@@ -68,7 +66,7 @@ class Owners {
 
   std::int64_t index(std::int64_t row, std::int64_t column) const { return (row - top_) * side_ + column - left_; }
 
-  /// Number the components of surely free cells, which hang together over sides and corners.
+  /// Number the components of free cells, which are connected over sides and corners.
   void join_runs() {
     std::vector<std::int32_t> parents;
     std::size_t above = 0;
@@ -98,7 +96,7 @@ class Owners {
     }
   }
 
-  /// Give the undecided neighbours of cells to the same owner, and so on.
+  /// Assign the undecided neighbours of cells to the same owner, repeatedly.
   void flood() {
     std::vector<std::int32_t> queue;
     for (const Run& run : runs_) {

@@ -1,4 +1,4 @@
-// Gates: where a path of a disk may lead through cells that are not surely free.
+// Gates: positions at which a path of a disk may lead through undecided cells.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@ namespace evenroad::world {
 
 class Disk;
 
-/// Return the cells of a square around such places: 1, else 0.
+/// Return the cells of a square around gates: 1, else 0.
 ///
-/// What hangs together near the square decides, not what does on the whole map.  From every component of surely free
-/// cells the undecided ones are visited outwards.  Along a wall they are a strip of one or two.  Where they lie deeper,
-/// where two components meet, or where none comes to, there is a gate.
+/// Components near the square decide, not those of the whole map.  Undecided cells are visited outwards from every
+/// component of free cells.  Along a wall they are a strip of one or two.  There is a gate if they lie deeper, if two
+/// components meet, or if no component reaches them.
 std::unique_ptr<std::uint8_t[]> find_gates(const Disk& disk, const Square& square);
 
 }  // namespace evenroad::world

@@ -1,5 +1,5 @@
-// A* over whole-number costs with buckets for the queue; a step between surely free cells that share a side or a corner
-// needs no check, every other one is tested exactly.
+// A* over integer costs with buckets for the queue.  A step between free cells that share a side or a corner needs no
+// check; every other one is tested exactly.
 #include "world/lattice_path.hpp"
 
 #include <algorithm>
@@ -30,10 +30,10 @@ constexpr std::size_t OVER_CELLS = 8;
 /// Number of lattice points that a start or goal is linked to, and the rings of them that are tried.
 constexpr std::size_t LINKS = 24;
 constexpr std::int64_t RINGS = 13;
-/// Share of the least cost that counts as a bound: what is rounded down on the way.
+/// Share of the least cost that counts as a bound, because costs are rounded down.
 constexpr double BOUND = 0.97;
 
-/// The queue: nodes in buckets by key, first out what came last.  Its keys never lie farther apart than its buckets.
+/// The queue: nodes in buckets by key, last in, first out.  Its keys never differ by more than the number of buckets.
 class Buckets {
  public:
   explicit Buckets(std::int64_t least) : key_(least) { heads_.fill(-1); }
@@ -43,7 +43,7 @@ class Buckets {
 
   void put(Node node, std::int64_t key) {
     std::int32_t& head = heads_[key % COUNT];
-    // Entries that were taken are written again: the queue is as large as what waits.
+    // Slots of removed entries are reused, so the queue is as large as the number of waiting nodes.
     std::int32_t entry = spare_;
     if (entry >= 0) {
       spare_ = entries_[entry].next;
@@ -95,7 +95,7 @@ class LatticeSearch {
       for (const Node node : links(goals[goal])) {
         if (goal_of(node) < 0) goal_nodes_.push_back({number(node), static_cast<std::int64_t>(goal)});
       }
-      // The first goal that a node leads to is the one that counts.
+      // Only the first goal that a node leads to counts.
       std::sort(goal_nodes_.begin(), goal_nodes_.end(),
                 [](const GoalNode& a, const GoalNode& b) { return a.node < b.node; });
     }
@@ -127,7 +127,7 @@ class LatticeSearch {
     std::int64_t node, goal;
   };
 
-  /// Return the number of a node, which no other one has.
+  /// Return the unique number of a node.
   static std::int64_t number(Node at) { return static_cast<std::int64_t>(at.row) << 32 | at.column; }
   Point map_point(Node at) const {
     return disk_.frame().to_map({0.5 * static_cast<double>(at.column), 0.5 * static_cast<double>(at.row)});
@@ -166,7 +166,7 @@ class LatticeSearch {
   /// Return the nodes near a map point that can be reached straight, ring by ring until there are enough.
   std::vector<Node> links(Point from) {
     const Point at = disk_.frame().to_padded(from);
-    // Far outside there is nothing to link to; nor is there at what is no number.
+    // Points far outside, or with NaN, have no links.
     const auto nearest = [](double along) {
       return static_cast<std::int64_t>(std::nearbyint(2.0 * (along >= -1e9 ? std::min(along, 1e9) : -1e9)));
     };
@@ -202,7 +202,7 @@ class LatticeSearch {
       keys.push_back(cost + bound(node));
       least = std::min(least, keys.back());
     }
-    // The keys of the seeds may lie far apart, as no two steps of the search do: late ones count as less near.
+    // The keys of the seeds may differ by more than those of later steps, so large ones are clipped.
     Buckets queue(least);
     for (std::size_t i = 0; i < linked.size(); i++) {
       queue.put(linked[i], std::min(keys[i], least + Buckets::COUNT / 2 - 1));
@@ -214,7 +214,7 @@ class LatticeSearch {
   void expand(Node here, std::int32_t spent, Buckets& queue) {
     const std::size_t first = is_centre(here) ? 0 : OVER_CELLS, last = is_at_gate(here) ? STEPS.size() : OVER_CELLS;
     for (std::size_t step = first; step < last; step++) {
-      // Never out of the array: nothing is free on its ring.
+      // It never leaves the array, because nothing is free on its ring.
       const Node there{here.column + STEPS[step].right, here.row + STEPS[step].down};
       const std::int32_t cost = spent + STEPS[step].cost;
       const NodeState* const known = nodes_.find(there);

@@ -1,7 +1,8 @@
-// A search over intervals of the lines between rows of cells, each seen from a root where the way turned last, after
-// Anya (D. Harabor and A. Grastien, 2013): its least estimate never exceeds the shortest way through the cells.
+// A search over intervals of the lines between rows of cells, each visible from a root at which the path turned last,
+// after Anya (D. Harabor and A. Grastien, 2013).  Its least estimate never exceeds the shortest path through the cells.
 //
-// All is in the padded pixel plane.  A row's cells that are not blocked form runs; a way crosses from run to run.
+// Coordinates are in the padded pixel plane.  A row's cells that are not blocked form runs; a path crosses from run to
+// run.
 #include "world/least_length.hpp"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double NEVER = std::numeric_limits<double>::infinity();
 
-/// Share of a length that rounding may have added to it.
+/// Bound of the rounding of a length, as a share.
 constexpr double ROUNDING = 1e-9;
 
 /// Cells of a row from one side to another, neighbours on both sides blocked.
@@ -27,20 +28,20 @@ struct Run {
   double left, right;
 };
 
-/// What is seen of a line from a root, before the run on the line's other side is entered.
+/// The part of a line that is visible from a root, before the run on its other side is entered.
 struct Interval {
   double left, right;
   std::int64_t line;
-  /// 1 to go on to higher rows, -1 to lower ones.
+  /// 1 towards higher rows, -1 towards lower ones.
   std::int64_t onward;
   Point root;
-  /// The length of the way to the root, and the least with all that follows.
+  /// The length of the path to the root, and a lower bound of the whole length.
   double length, estimate;
 
   bool operator<(const Interval& other) const { return estimate > other.estimate; }
 };
 
-/// Say whether padded coordinates are on the map or its border.  No way leads outside, and far outside rows have no
+/// Return whether padded coordinates are on the map or its border.  No path leads outside, and rows far outside have no
 /// number.
 bool is_on(const Disk& disk, Point at) {
   return 0.0 <= at.x && at.x <= static_cast<double>(disk.columns()) && 0.0 <= at.y &&
@@ -82,7 +83,7 @@ class AnyAngleSearch {
     return false;
   }
 
-  /// Return the first of the rows of which a coordinate is part: it may lie on a line between two.
+  /// Return the first row that contains a coordinate, which may lie on a line between two.
   static std::int64_t rows_below(double y) { return static_cast<std::int64_t>(std::ceil(y)) - 1; }
 
   /// Return the row that is entered over an interval.
@@ -116,7 +117,7 @@ class AnyAngleSearch {
     return &*std::prev(after);
   }
 
-  /// Say whether the way may turn at a place of a line: at a corner of a blocked cell to the left, or to the right.
+  /// Return whether the path may turn at a point of a line: at a corner of a blocked cell to the left, or to the right.
   bool is_corner(double x, std::int64_t line, bool is_left) const {
     const auto column = static_cast<std::int64_t>(x);
     if (static_cast<double>(column) != x) return false;
@@ -129,7 +130,7 @@ class AnyAngleSearch {
            disk_.cell(row, column) == BLOCKED;
   }
 
-  /// See the other side of a run through an interval, and turn around its ends where these are corners.
+  /// Project an interval to the other side of a run, and turn around its ends if these are corners.
   void expand(const Interval& at, const Run& run) {
     const auto y = static_cast<double>(at.line);
     const double across = y - at.root.y;
@@ -157,7 +158,7 @@ class AnyAngleSearch {
     }
   }
 
-  /// Make a corner the root of what follows; return whether no shorter way to it is known.
+  /// Make a corner the root of later intervals; return whether no shorter path to it is known.
   bool turn(const Interval& at, Point corner, Interval& next) {
     next.root = corner, next.length = at.length + distance(at.root, corner);
     const auto [known, is_new] = roots_.try_emplace(key(corner), next.length);
@@ -166,7 +167,7 @@ class AnyAngleSearch {
     return true;
   }
 
-  /// Put what is seen of a line into the queue, one interval for each run beyond it.
+  /// Put the visible part of a line into the queue, one interval for each run beyond it.
   void cross(Interval seen) {
     if (!(seen.left < seen.right)) return;
     const std::vector<Run>& all = runs(row_beyond(seen));
@@ -181,11 +182,11 @@ class AnyAngleSearch {
     }
   }
 
-  /// Return the least length of a way over an interval, if nothing were blocked beyond it.
+  /// Return the least length of a path over an interval, with nothing blocked beyond it.
   double estimate(const Interval& seen) const {
     const auto y = static_cast<double>(seen.line);
     Point goal = goal_;
-    // A goal on this side is reached as soon as its mirror image.
+    // A goal on this side is as far as its mirror image.
     if ((goal.y - y) * static_cast<double>(seen.onward) < 0.0) goal.y = 2.0 * y - goal.y;
     const double before = std::abs(y - seen.root.y), after = std::abs(goal.y - y);
     double x = seen.root.x;
@@ -207,7 +208,7 @@ class AnyAngleSearch {
   Point goal_;
   std::vector<Row> rows_;
   std::priority_queue<Interval> queue_;
-  /// The shortest ways to corners.
+  /// The shortest paths to corners.
   std::unordered_map<std::int64_t, double> roots_;
 };
 

@@ -1,4 +1,4 @@
-// A length that no path of a disk falls below.
+// A lower bound of the length of a disk's paths.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,11 @@
 
 namespace evenroad::world {
 
-/// Return a length that no path between two map points falls below, in map units.
+/// Return a lower bound of the length of paths between two map points, in map units.
 ///
-/// It is that of the shortest way of a point through all cells that are not BLOCKED, in any direction, up to rounding;
-/// after that many intervals of cells' sides it is what is known by then.  Infinite where no cells join the points.
+/// It is the length of the shortest path of a point through all cells that are not BLOCKED, in any direction, up to
+/// rounding.  After that many intervals of cells' sides it is the bound known by then.  It is infinite if no cells join
+/// the points.
 double least_length(const Disk& disk, Point start, Point goal, std::int64_t most);
 
 }  // namespace evenroad::world

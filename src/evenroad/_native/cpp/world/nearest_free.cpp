@@ -11,12 +11,12 @@ namespace evenroad::world {
 namespace {
 
 constexpr double INF = std::numeric_limits<double>::infinity();
-/// Not onto the sides of a cell, where rounding decides whose they are.
+/// Not on the sides of a cell, where rounding decides which cell they belong to.
 constexpr double INSIDE = 1e-6;
 
 double squared_distance(Point a, Point b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
 
-/// The free place that was found, and its squared distance.
+/// The free point that was found, and its squared distance.
 struct Best {
   Point at{};
   double squared = INF;
@@ -49,7 +49,7 @@ NearestObstacle nearest_obstacle(const Disk& disk, Point at) {
   double best = INF;
   Point nearest = at;
   for (std::int64_t away = 0; away < disk.rows(); away++) {
-    // So many rows off, everything is at least away - 1 away.
+    // Cells this many rows away are at a distance of at least away - 1.
     const double least = static_cast<double>(away) - 1.0;
     if (away > 1 && least * least >= best) break;
     const std::int64_t most =
@@ -71,7 +71,7 @@ NearestObstacle nearest_obstacle(const Disk& disk, Point at) {
 
 std::optional<Point> nearest_free(const Disk& disk, Point at) {
   const std::int64_t last_row = disk.rows() - 2, last_column = disk.columns() - 2;
-  // Of a place that is no number, or far outside, the nearest cell of the map.
+  // For NaN, or a point far outside, the nearest cell of the map.
   const auto cell = [](double along, std::int64_t last) {
     return along >= 1.0 ? static_cast<std::int64_t>(std::min(along, static_cast<double>(last))) : 1;
   };

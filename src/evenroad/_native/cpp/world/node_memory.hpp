@@ -1,5 +1,5 @@
-// What a search knows of the nodes of a half lattice, in blocks that are taken when a node of theirs is reached: a
-// query costs what it touches, not what the map has.
+// The data of a search about the nodes of a half lattice, in blocks that are allocated when a node in them is reached.
+// The cost of a query thus follows the visited nodes, not the size of the map.
 #pragma once
 
 #include <algorithm>
@@ -20,14 +20,14 @@ struct Node {
 /// One node.
 struct NodeState {
   std::int32_t cost;
-  /// The search that reached it: of another one nothing holds.
+  /// The search that reached it; entries of other searches are invalid.
   std::uint16_t search;
   /// The step by which it was reached.
   std::uint8_t step;
   bool is_closed;
 };
 
-/// The nodes of the one search of a thread, which keeps the memory for the next one.
+/// The nodes of a thread's search; the memory is reused by the next one.
 class NodeMemory {
  public:
   /// The step of a node that the search began with.
@@ -37,7 +37,7 @@ class NodeMemory {
     const auto blocks = static_cast<std::size_t>(wide_ * ((rows >> SHIFT) + 1));
     for (Blocks& each : kept_.blocks) each.by_index.resize(std::max(each.by_index.size(), blocks));
     if (++kept_.search != 0) return;
-    // Numbers of searches repeat: nothing of old ones may be left.
+    // Numbers of searches repeat, so entries of old searches are cleared.
     for (Blocks& each : kept_.blocks) each.spare.clear();
     kept_.search = 1;
   }
@@ -55,7 +55,7 @@ class NodeMemory {
     }
   }
 
-  /// Return what is known of a node, or null where it was not reached.
+  /// Return the data of a node, or null if it was not reached.
   NodeState* find(Node at) const {
     NodeState* const block = kept_.blocks[kind(at)].by_index[index(at)];
     if (block == nullptr) return nullptr;
@@ -72,8 +72,8 @@ class NodeMemory {
   }
 
  private:
-  /// Nodes whose numbers of column and row agree but for the last bits are one block.  Centres of cells, whose numbers
-  /// are odd, have blocks of their own: away from gates there are no others.
+  /// Nodes whose column and row numbers agree up to the last bits form a block.  Centres of cells have odd numbers and
+  /// separate blocks, because away from gates there are no others.
   static constexpr int SHIFT = 7, HALF = SHIFT - 1;
   static constexpr std::size_t SIDE = std::size_t{1} << HALF;
   /// Number of blocks of either kind that a thread keeps: 32 and 96 MB.
@@ -85,7 +85,7 @@ class NodeMemory {
   using Block = std::unique_ptr<NodeState[], Free>;
 
   struct Blocks {
-    /// The block of each place, null where none is taken.
+    /// The block of each position, null if not allocated.
     std::vector<NodeState*> by_index;
     std::vector<std::pair<std::size_t, Block>> taken;
     std::vector<Block> spare;

@@ -1,4 +1,4 @@
-// Which cells of a map are occupied, a bit each, with one ring of occupied cells around for the outside.
+// The occupied cells of a map, one bit each, with a ring of occupied cells around them for the outside.
 #pragma once
 
 #include <bit>
@@ -9,7 +9,7 @@
 
 namespace evenroad::world {
 
-/// Rows and columns count the ring; whatever lies beyond it to the left and right is occupied, too.
+/// Rows and columns include the ring; everything beyond it to the left and right is occupied, too.
 class Occupancy {
  public:
   explicit Occupancy(Matrix<const bool> map)
@@ -51,8 +51,8 @@ class Occupancy {
     return window(row, first) << (63 - (last - first)) != 0;
   }
 
-  /// Return how many columns to the left of one of the map the nearest occupied cell is, 0 in one; more than `most`
-  /// where it is farther.
+  /// Return the distance in columns to the nearest occupied cell to the left, 0 in one; more than `most` if it is
+  /// farther.
   std::int64_t to_left(std::int64_t row, std::int64_t column, std::int64_t most) const {
     for (std::int64_t away = 0; away <= most; away += 64) {
       if (const std::uint64_t seen = window(row, std::max<std::int64_t>(column - away - 63, -64)); seen != 0) {

@@ -1,5 +1,5 @@
-// Strings are pulled corner by corner: a corner slides along one of its legs, or is cut into two.  Both make the path
-// shorter whatever the obstacles are; how far is found by halving, with exact motions.
+// A path is pulled taut corner by corner: a corner slides along one of its legs, or is cut into two.  Both make the
+// path shorter for any obstacles.  The distance is found by bisection, with exact motions.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -12,10 +12,10 @@ namespace evenroad::world {
 namespace {
 
 constexpr int ROUNDS = 12;
-/// Share of the length that a round has to gain, or it is the last; and that a new corner has to.
+/// Share of the length that a round must gain, or it is the last; and that a new corner must gain.
 constexpr double WORTHWHILE = 2e-4, WORTH_A_CORNER = 2e-4;
-/// A corner is left this far, or twice, from the farthest place that it can be pulled to, in pixels: what drives along
-/// the path, in steps of time, has room to pass it.
+/// Distance of a corner, or twice that, from the farthest point that it can be pulled to, in pixels.  A robot that
+/// drives along the path, in steps of time, can then pass it.
 constexpr double CLOSE = 1.0 / 64.0;
 constexpr int HALVINGS = 20;
 
@@ -34,7 +34,7 @@ class Smoother {
 
   std::int64_t motions() const { return motions_; }
 
-  /// Return the path without points that need not be visited: from each on to the farthest that is found to be visible.
+  /// Return the path without unnecessary points: each is joined to the farthest visible one that is found.
   std::vector<Point> skip_ahead(std::span<const Point> path) {
     std::vector<Point> kept = {path.front()};
     const std::size_t last = path.size() - 1;
@@ -56,7 +56,7 @@ class Smoother {
     return kept;
   }
 
-  /// Pull all corners once, from the first to the last; those that need not be visited go.
+  /// Pull all corners once, from the first to the last, and remove unnecessary ones.
   void pull(std::vector<Point>& points) {
     std::size_t kept = 1;
     for (std::size_t next = 1; next + 1 < points.size(); next++) {
@@ -98,7 +98,7 @@ class Smoother {
     return disk_.is_motion_free(from, to);
   }
 
-  /// Return a bit less than the largest number up to `most` for which a test holds, as it does for 0.
+  /// Return slightly less than the largest number up to `most` for which a test holds; it holds for 0.
   template <class Holds>
   double farthest(double most, const Holds& holds) {
     if (holds(most)) return most;
@@ -110,13 +110,13 @@ class Smoother {
     return std::max(good - close_, 0.0);
   }
 
-  /// Return where a corner comes to that slides along its leg to `before` while it sees `after`.
+  /// Return the position of a corner that slides along its leg to `before` while `after` is visible.
   Point slid(Point before, Point corner, Point after) {
     const double leg = distance(before, corner);
     if (leg <= close_) return corner;
     const auto at = [&](double away) { return between(corner, before, away / leg); };
     const Point slid = at(farthest(leg, [&](double away) { return is_free(at(away), after); }));
-    // A piece of a free motion is tested, too: its end is rounded.
+    // A piece of a free motion is tested, too, because its end is rounded.
     return is_free(before, slid) ? slid : corner;
   }
 

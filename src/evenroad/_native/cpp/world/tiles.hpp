@@ -1,5 +1,5 @@
-// A table of bytes over a grid, in square tiles that are made when they are first needed: a query pays for the part
-// of the map that it looks at.
+// A table of bytes over a grid, in square tiles that are made when first needed.  A query pays only for the part of the
+// map that it uses.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace evenroad::world {
 
-/// Threads may ask at once: what a tile holds depends on its place alone, and the first that is made is kept.
+/// Threads may read it at once.  The contents of a tile depend only on its position, and the first one made is kept.
 class Tiles {
  public:
   Tiles(std::int64_t rows, std::int64_t columns, int shift)
@@ -34,7 +34,7 @@ class Tiles {
   }
 
  private:
-  /// Keep a tile; those that hold one value alone are one.
+  /// Store a tile; tiles with a single value are shared.
   const std::uint8_t* keep(std::int64_t number, std::unique_ptr<std::uint8_t[]> made) const {
     const std::scoped_lock lock(keeping_);
     if (const std::uint8_t* other = tiles_[number].load(std::memory_order_acquire); other != nullptr) return other;
