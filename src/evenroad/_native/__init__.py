@@ -1,6 +1,6 @@
-"""The loops over states, in C++: one module for each instruction set, of which one is loaded with this package.
+"""The loops over states, in C++: one module for each instruction set, one of which is loaded with this package.
 
-The parts of that module are modules here, e.g. `evenroad._native.points`.  Their stubs say what they hold.
+The parts of that module are modules here, e.g. `evenroad._native.points`.  Their stubs list their contents.
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ class Tree:
     def remove_branch(self, node: int) -> None: ...
 
 class Columns:
-    """Which queries have a path, where the waypoints of each begin, all waypoints, and lengths and seconds."""
+    """The queries with a path, the first waypoint of each, all waypoints, and lengths and seconds."""
 
     solved: Bools
     begins: Ints

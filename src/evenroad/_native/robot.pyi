@@ -37,7 +37,7 @@ class Surface:
     def around(surfaces: Sequence[Surface | None]) -> Surface: ...
 
 class ClosedParts:
-    """Which triangles bound what is solid, have to be turned, and are the first of their part, (t,) each."""
+    """Which triangles bound solids, must be flipped, and are the first of their part, (t,) each."""
 
     closed: Bools
     turned: Bools
@@ -71,7 +71,7 @@ class Scene:
     ) -> Scene | None: ...
 
 class Contact:
-    """What touches: a capsule and an obstacle of the scene, or of its surfaces, or the number of a pair of capsules."""
+    """A contact: a capsule and an obstacle of the scene or one of its surfaces, or the number of a pair of capsules."""
 
     kind: Literal["nothing", "obstacle", "surface", "itself"]
     capsule: int
@@ -116,18 +116,18 @@ class Keeps:
 class Beginnings:
     """Configurations at which solutions begin: `start`, and those of the nearest tips among `known`.
 
-    Of these from number `first` to below `last`, one in `every`.
+    These are one in `every` from number `first` to below `last`.
     """
 
     def __init__(self, start: Floats, known: Floats, tips: Floats, first: int, last: int, every: int) -> None: ...
 
 class Postures:
-    """Which coordinates are in the same posture after a whole turn, their bounds, and how far one posture reaches."""
+    """Coordinates that a whole turn leaves in the same posture, their bounds, and the extent of one posture."""
 
     def __init__(self, turns: Bools, bounds: Floats, same: float) -> None: ...
 
 class Solutions:
-    """Postures of all tasks, whose each is, what is nearest to each task, and what that lacks, squared."""
+    """Postures of all tasks, the task of each, the configuration nearest to each task, and its squared error."""
 
     q: Floats
     task: Ints

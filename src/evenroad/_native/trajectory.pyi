@@ -27,7 +27,7 @@ class PathLimits:
     def __init__(self, highest: float, start: float, goal: float, further: FurtherLimits, share: float) -> None: ...
 
 class RoundedPath:
-    """Straight lines and arcs, one after the other (Kunz and Stilman 2012, section IV).
+    """A sequence of straight lines and arcs (Kunz and Stilman 2012, section IV).
 
     Piece i reaches from length ``starts[i]`` to ``starts[i + 1]``.  It is a line from ``origin[i]`` along ``along[i]``
     where the curvature ``bend[i]`` is 0, else an arc of radius ``1 / bend[i]`` about ``origin[i]``, from the direction
@@ -66,7 +66,7 @@ class FurtherShares:
     tip_acceleration: float
 
 class Timed:
-    """What became of a trajectory: its states at its steps, how far along the path each is, and how it was made."""
+    """The outcome of a trajectory: states at its steps, their lengths along the path, and measures."""
 
     outcome: Literal["made", "too long", "too heavy", "too fast", "not within"]
     positions: Floats
@@ -92,8 +92,8 @@ def timed(
 def rounded(waypoints: Floats, deviation: Floats) -> RoundedPath:
     """Round the corners of a path, (p, dim), p >= 2, no two waypoints in a row equal.
 
-    The arc at waypoint i passes it within ``deviation[i]``, (p,), and replaces at most half of both motions.  Where
-    `deviation` is 0 the path stops at its corner.
+    The arc at waypoint i passes it within ``deviation[i]``, (p,), and replaces at most half of both motions.  A
+    `deviation` of 0 is a stop at the corner.
     """
 
 def bends_of(waypoints: Floats, same: float) -> Ints: ...

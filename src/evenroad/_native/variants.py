@@ -1,4 +1,4 @@
-"""The builds of the native kernel: which of them are here, which this processor runs, and which one is loaded."""
+"""The builds of the native kernel: those installed, those that this processor runs, and the loaded one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evenroad.errors import NotAvailable, UnknownName
 ENVIRONMENT = "EVENROAD_ARCH"
 """Environment variable that names the build to load; without it, the newest that the processor runs."""
 SANITIZED = "sanitized"
-"""A build for tests that stops at memory errors and undefined behaviour, never loaded unasked: `make sanitize`."""
+"""A build for tests that stops at memory errors and undefined behaviour, loaded only on request: `make sanitize`."""
 
 
 def module_name(variant: str) -> str:
@@ -21,7 +21,7 @@ def module_name(variant: str) -> str:
 
 
 def usable() -> tuple[str, ...]:
-    """Return the builds that are here and that this processor runs, the newest instruction set last."""
+    """Return the installed builds that this processor runs, the newest instruction set last."""
     try:
         cpu = import_module("evenroad._native._cpu")
     except ImportError as error:

@@ -4,7 +4,7 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats
 
 class LatticePath:
-    """A path over a lattice, empty where there is none: which goal it leads to, or -1, and what the search counted."""
+    """A path over a lattice, empty if there is none, its goal, or -1, and the counts of the search."""
 
     points: Floats
     goal: int
@@ -12,7 +12,7 @@ class LatticePath:
     motions: int
 
 class Disk:
-    """What is known of one disk on one map: exact tests of its positions and motions; it never changes."""
+    """One disk on one map: exact tests of its positions and motions; it never changes."""
 
     def __init__(self, occupied: Bools, frame: Floats, radius: float) -> None: ...
     def points_free(self, q: Floats) -> Bools: ...
@@ -27,7 +27,7 @@ class Disk:
     def least_length(self, start: Floats, goal: Floats, most: int) -> float: ...
 
 class Components:
-    """Which places of a disk on a map hang together."""
+    """Connected components of the positions of a disk on a map."""
 
     def __init__(self, disk: Disk) -> None: ...
     def at(self, column: float, row: float) -> int: ...

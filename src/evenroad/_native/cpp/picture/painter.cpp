@@ -238,7 +238,7 @@ Vector drawn_over(Vector below, const Painter& painter, const Layer& layer, cons
   for (std::size_t i = 0; i < SAMPLES; i++) {
     if (ours.found.owner[samples[i]] < 0) continue;
     owner = ours.found.owner[samples[i]];
-    // A ghost may coincide with its body, so the body counts as nearer by half a percent.
+    // A ghost may coincide with its body, so it is seen only if it is nearer by half a percent.
     const bool seen = !before || ours.found.near[samples[i]] >= 1.005F * solid.found.near[samples_behind[i]];
     const bool through = before && solid.found.owner[samples_behind[i]] >= static_cast<std::int32_t>(see_through);
     share += layer.opacity * (seen ? 1.0 : through ? layer.hidden : 0.0);

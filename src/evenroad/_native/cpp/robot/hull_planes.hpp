@@ -65,7 +65,7 @@ EVENROAD_INLINE Vec3x16 nearest_of_three(Vec3x16 a, Vec3x16 b, Vec3x16 c) {
 
 /// Return the mask of queried lanes in which none of some planes separates two hulls by more than `near`.
 ///
-/// `shift` leads from the middle of the second hull's box to that of the first, and `sizes` are the sums of both half
+/// `between` leads from the middle of the second hull's box to that of the first, and `sizes` are the sums of both half
 /// extents.  `first` returns the farthest points of the first hull along directions, and `second` those of the second,
 /// relative to `shift`.
 template <class First, class Second>
