@@ -12,8 +12,8 @@ WHOLE = 1 << 24
 """A range in units of the smallest side that a cell may have."""
 OPEN = 0
 """Answer of a cell of which nothing is claimed."""
-MOST_PAIRS = 1 << 25
-"""Pairs of cells that are looked at, at most."""
+MOST_PAIRS, MOST_NEIGHBOURS = 1 << 25, 1 << 22
+"""Pairs of cells that are looked at, and of neighbours among them, at most."""
 _NEAR = 1e-3
 """How near a cell is to a state that counts as in it, in units."""
 _AT_ONCE = 1 << 20
@@ -82,7 +82,7 @@ def cells_of(ranges: Ranges, answers: Ints) -> Cells:
 def reached(cells: Cells, start: Bools) -> Bools:
     """Return which open cells are joined to some by faces: a path that meets no blocked cell stays in them."""
     is_open = cells.answer == OPEN
-    rows, budget = np.flatnonzero(is_open), [MOST_PAIRS]
+    rows, budget = np.flatnonzero(is_open), [MOST_PAIRS, MOST_NEIGHBOURS]
     pairs = [_faces(cells, rows, axis, budget) for axis in range(cells.low.shape[1])]
     one, two = (np.concatenate([each[i] for each in pairs] + [each[1 - i] for each in pairs]) for i in (0, 1))
     order = np.argsort(one, kind="stable")
@@ -114,5 +114,7 @@ def _faces(cells: Cells, rows: Ints, axis: int, budget: list[int]) -> tuple[Ints
         begin = np.maximum(cells.low[one], cells.low[two])
         end = np.minimum(cells.low[one] + cells.side[one], cells.low[two] + cells.side[two])
         meet = (begin < end)[:, others].all(axis=1)
+        budget[1] -= int(meet.sum())
+        demand(budget[1] >= 0, "too many cells are neighbours")
         found.append((one[meet], two[meet]))
     return np.concatenate([each[0] for each in found]), np.concatenate([each[1] for each in found])

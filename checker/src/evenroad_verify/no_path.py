@@ -27,6 +27,7 @@ from evenroad_verify.proof import ROUNDING
 from evenroad_verify.robot import Joint
 
 MAGIC = b"evenroad certificate of no path 1\n"
+_AT_ONCE = 1 << 14
 _ANY = 1000.0
 """A range of more than this is none [rad or m]."""
 
@@ -131,20 +132,28 @@ def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
                 moving = frames.column[between(frames, ball.frame, frame)]
                 demand(np.isin(moving, columns).all(), "other joints move a witness")
             middles, half = cells.middles()
-            places = Places(frames, cells.ranges, middles[shut], half[shut], len(terminals.joints))
             _require_precise(frames, inputs, bodies, cells)
-            least = min(least, require_blocked(places, frames, witness[shut], table))
+            for rows in _some(shut):
+                places = Places(frames, cells.ranges, middles[rows], half[rows], len(terminals.joints))
+                least = min(least, require_blocked(places, frames, witness[rows], table))
             blocked += int(shut.sum())
             inside = _inside(cells, terminals)
             for i, goal in enumerate(terminals.curves[: read.goals, 2]):
                 left[i] &= (cells.holding(goal) & inside).any()
-            places = Places(frames, cells.ranges, middles[inside], half[inside], len(terminals.joints))
-            slides = _slides(frames, inputs, terminals)
-            for i, pose in enumerate(read.poses, start=read.goals):
-                left[i] &= not are_beyond(pose, places, frames, place, columns, slides).all()
+            slides, beyond = _slides(frames, inputs, terminals), np.ones(len(read.poses), bool)
+            for rows in _some(inside) if read.poses else ():
+                places = Places(frames, cells.ranges, middles[rows], half[rows], len(terminals.joints))
+                beyond &= [are_beyond(pose, places, frames, place, columns, slides).all() for pose in read.poses]
+            left[read.goals :] &= ~beyond
         demand(not left.any(), f"a goal is not shown to be out of reach: number {int(left.argmax())}")
     used = tuple(dict.fromkeys(terminals.joints[column] for columns, _ in read.parts for column in columns))
     return Shown(read, names, used, blocked, least, silent(inputs.robot, inputs.scene, shapes, place, terminals))
+
+
+def _some(chosen: Bools) -> list[Ints]:
+    """Return the rows of chosen cells, some at a time."""
+    rows = np.flatnonzero(chosen)
+    return np.array_split(rows, 1 + len(rows) // _AT_ONCE)
 
 
 def _inside(cells: Cells, terminals: Certificate) -> Bools:
