@@ -8,27 +8,9 @@ from evenroad_verify.certificate import Certificate
 from evenroad_verify.claim import claim_of, read_inputs
 from evenroad_verify.proof import BOXES, CORNERS, LEAST, ROUNDING, Motions
 from tests.certificates.small import sources_in
+from tests.certificates.tree import POST, URDF
 from tests.robots.oracle import link_poses
 
-BALL = '<collision><origin xyz="{}"/><geometry><sphere radius="0.05"/></geometry></collision>'
-LIMIT = '<limit lower="-3" upper="3"/>'
-URDF = f"""<robot name="tree">
-  <link name="base"/>
-  <link name="a">{BALL.format("0.1 0.2 0")}</link>
-  <link name="b">{BALL.format("0 0.1 0.3")}</link>
-  <link name="c">{BALL.format("0.2 -0.1 0.1")}{BALL.format("0.3 0.2 0")}</link>
-  <link name="d">{BALL.format("-0.2 0.3 0.1")}</link>
-  <joint name="A" type="revolute"><parent link="base"/><child link="a"/><origin xyz="0 0 0.3" rpy="0.1 0.2 0.3"/>
-    <axis xyz="0 0.6 0.8"/>{LIMIT}</joint>
-  <joint name="B" type="prismatic"><parent link="a"/><child link="b"/><origin xyz="0.2 0 0.1"/>
-    <axis xyz="1 0 0"/>{LIMIT}</joint>
-  <joint name="C" type="revolute"><parent link="b"/><child link="c"/><origin xyz="0 0.3 0" rpy="0 1 0"/>
-    <axis xyz="0 1 0"/>{LIMIT}</joint>
-  <joint name="D" type="revolute"><parent link="a"/><child link="d"/><origin xyz="-0.1 0.1 0" rpy="0 0 2"/>
-    <axis xyz="0.8 0 0.6"/><mimic joint="C" multiplier="-1.5" offset="0.2"/>{LIMIT}</joint>
-</robot>
-"""
-POST = "obstacles:\n  post: {shape: sphere, radius: 0.05, xyz: [0.4, 0.3, 0.2]}\n"
 BALLS = {"a": [(0.1, 0.2, 0)], "b": [(0, 0.1, 0.3)], "c": [(0.2, -0.1, 0.1), (0.3, 0.2, 0)], "d": [(-0.2, 0.3, 0.1)]}
 COMMON = {"the obstacles": (), "b": (0,), "c": (0,), "d": (0,)}
 """Second body of a pair -> columns of the joints that move both."""

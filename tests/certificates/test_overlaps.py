@@ -15,7 +15,7 @@ from evenroad_verify.overlaps import Body, Places, Spot, between, is_ball_inside
 from evenroad_verify.shapes import primitive, surface
 from tests.certificates.no_path import LINK, Parts, Place, accepts, at, flat_arm, posts
 from tests.certificates.small import sources_in
-from tests.certificates.test_bounds import POST, URDF
+from tests.certificates.tree import POST, URDF
 from tests.robots.oracle import link_poses
 
 SIZES = {
