@@ -5,7 +5,9 @@ import re
 import numpy as np
 import pytest
 
+from evenroad.errors import BrokenFile
 from evenroad.trajectory import Limits, make_trajectory, save_trajectory
+from evenroad.trajectory.waypoints_file import read_waypoints
 
 PATH = np.random.default_rng(4).uniform(-1.5, 1.5, (5, 6))
 LIMITS = Limits((3.15,) * 3 + (3.2,) * 3, (6.0,) * 6)
@@ -33,6 +35,17 @@ def test_a_bag_is_read_back_by_rosbags(trajectory, tmp_path):
     np.testing.assert_array_equal([p.velocities for p in message.points], trajectory.velocities)
     times = [p.time_from_start.sec + 1e-9 * p.time_from_start.nanosec for p in message.points]
     np.testing.assert_allclose(times, trajectory.times, atol=1e-9)
+
+
+def test_a_bag_is_read_back_as_waypoints(trajectory, tmp_path):
+    pytest.importorskip("rosbags")
+    save_trajectory(tmp_path / "t.mcap", trajectory)
+    found = read_waypoints(tmp_path / "t.mcap")
+    np.testing.assert_array_equal(found.positions, trajectory.positions)
+    assert found.joints == trajectory.names
+    (tmp_path / "t.mcap").write_bytes((tmp_path / "t.mcap").read_bytes()[:200])
+    with pytest.raises(BrokenFile, match=r"t\.mcap"):
+        read_waypoints(tmp_path / "t.mcap")
 
 
 def test_the_moves_of_a_program_are_those_that_ur_rtde_writes(trajectory, tmp_path):

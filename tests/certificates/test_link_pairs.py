@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.certificates.link_pairs import decide_pair, untested_pairs
+from evenroad.certificates.link_pairs import Links, decide_pair, untested_pairs
 from evenroad.loading.load import read_robot
 from evenroad.loading.robot_file import RobotFile
 
@@ -33,7 +33,7 @@ def arm(folder, radius, lengths=(1.0, 0.5), limit=LIMIT, kind="revolute"):
     ("radius", "limit", "status"), [(0.29, LIMIT, "never"), (0.31, LIMIT, "touches"), (0.45, 2.5, "never")]
 )
 def test_a_folding_arm_touches_its_base_where_it_is_short_enough(radius, limit, status, tmp_path):
-    pair = decide_pair(*arm(tmp_path, radius, limit=limit), ("base", "l1"), "disabled", 20.0)
+    pair = decide_pair(Links(*arm(tmp_path, radius, limit=limit)), ("base", "l1"), "disabled", 20.0)
     nearest = math.sqrt(1.25 + math.cos(limit)) - 0.2 - radius
     assert pair.status == status == ("never" if nearest > 0.0 else "touches")
     assert pair.joints == ("j0", "j1")
@@ -45,8 +45,8 @@ def test_a_folding_arm_touches_its_base_where_it_is_short_enough(radius, limit, 
 def test_three_joints_are_decided_in_cells(tmp_path):
     # The shortest distance of the end from the base is 1 - 0.3 - 0.3.
     lengths = (1.0, 0.3, 0.3)
-    assert decide_pair(*arm(tmp_path, 0.1, lengths), ("base", "l2"), "disabled", 60.0).status == "never"
-    touching = decide_pair(*arm(tmp_path, 0.25, lengths), ("base", "l2"), "disabled", 60.0)
+    assert decide_pair(Links(*arm(tmp_path, 0.1, lengths)), ("base", "l2"), "disabled", 60.0).status == "never"
+    touching = decide_pair(Links(*arm(tmp_path, 0.25, lengths)), ("base", "l2"), "disabled", 60.0)
     assert touching.status == "touches"
     robot, _ = arm(tmp_path, 0.25, lengths)
     at = robot.fk(touching.configuration, "l2") @ er.Pose((0.3, 0.0, 0.0))
@@ -60,10 +60,10 @@ def test_without_time_a_pair_is_undecided(tmp_path):
 
 
 def test_links_with_one_joint_between_them_are_adjacent(tmp_path):
-    pair = decide_pair(*arm(tmp_path, 0.1, (0.5,)), ("base", "l0"), "neighbours", 5.0)
+    pair = decide_pair(Links(*arm(tmp_path, 0.1, (0.5,))), ("base", "l0"), "neighbours", 5.0)
     assert (pair.status, pair.adjacent, pair.lines) == ("never", True, 1)
     robot, shapes = arm(tmp_path, 0.31, (0.5,), kind="continuous")
-    pair = decide_pair(robot, shapes, ("base", "l0"), "neighbours", 5.0)
+    pair = decide_pair(Links(robot, shapes), ("base", "l0"), "neighbours", 5.0)
     assert (pair.status, pair.nearest) == ("touches", 0.0)
     reported = []
     pairs = [("base", "l0", "neighbours"), ("base", "nothing", "no shapes")]

@@ -27,6 +27,7 @@ from evenroad.certificates.first_touch import IN_CONTACT, first_touch, in_contac
 from evenroad.certificates.world_claim import Body, Owner, WorldClaim, bodies_of, nested
 from evenroad.geometry.hulls import piece_of
 from evenroad.geometry.shapes import Shape
+from evenroad.loading.link_bodies import opened
 from evenroad.robots.hull_trees import contacts, hull_trees
 from evenroad.robots.joint import Joint
 from evenroad.robots.kinematics import poses_at, with_mimics
@@ -34,8 +35,10 @@ from evenroad.robots.robot import Robot
 
 _SAMPLES = 1000
 """Number of random states in which a contact is looked for first."""
-_CONFIRMED = 20
-"""In how many of those that seem to be in contact this is shown in double precision, until it is once."""
+_BATCH = 50
+"""Number of these between two looks at the clock."""
+_CONFIRMED = 3
+"""In how many of a batch that seem to be in contact this is shown in double precision, until it is once."""
 _MOST = 4000
 """Largest number of answers to one line; a line of more is cut."""
 _SHORTER_LINES = 0.125
@@ -81,9 +84,29 @@ class LinkPair:
         return len(self.joints) <= 1
 
 
-def decide_pair(robot: Robot, shapes: Sequence[Shape], links: tuple[str, str], reason: str, seconds: float) -> LinkPair:
-    """Return whether two links ever touch, within some seconds; `shapes` are those of all links."""
-    between = _between(robot, [shape for shape in shapes if shape.link in links], links)
+class Links:
+    """The links of a robot with the shapes of its file, meshes read once."""
+
+    def __init__(self, robot: Robot, shapes: Sequence[Shape]) -> None:
+        self.robot = robot
+        self.shapes: dict[str, list[Shape]] = {}
+        for shape in opened(shapes):
+            self.shapes.setdefault(shape.link, []).append(shape)
+        self._leaves: dict[str, list[tuple[Floats, float]]] = {}
+
+    def leaves(self, link: str) -> list[tuple[Floats, float]]:
+        """Return the convex parts of a link, as trees are made of."""
+        if link not in self._leaves:
+            pieces = map(piece_of, self.shapes[link])
+            self._leaves[link] = [(piece.parts, piece.radius) for piece in pieces]
+        return self._leaves[link]
+
+
+def decide_pair(of: Links, links: tuple[str, str], reason: str, seconds: float) -> LinkPair:
+    """Return whether two links ever touch, within some seconds."""
+    if seconds <= 0.0:
+        return LinkPair(links, reason, "undecided", tuple(_ranges(of.robot, links)), {}, None, 0)
+    between = _between(of, links)
     if not between.joints:
         q = np.zeros(1)
         touching = in_contact(between.claim.one_by_one(between.claim.pairs), q) or nested(between.claim, q)
@@ -92,7 +115,7 @@ def decide_pair(robot: Robot, shapes: Sequence[Shape], links: tuple[str, str], r
     decided = bool(np.isfinite(between.limits).all())
     try:
         with until(Deadline.after(seconds)):
-            decided = decided and not search.finds_contact(robot, shapes) and search.prove()
+            decided = decided and not search.finds_contact(of) and search.prove()
     except BudgetSpent:
         decided = False
     status: Literal["never", "touches", "undecided"] = "never" if decided else "undecided"
@@ -131,7 +154,7 @@ class _Search:
         """Whether a state in contact was seen."""
         return self.nearest is not None and self.nearest <= IN_CONTACT
 
-    def finds_contact(self, robot: Robot, shapes: Sequence[Shape]) -> bool:
+    def finds_contact(self, of: Links) -> bool:
         """Return whether a contact is in one of random states, or one link is inside of the other."""
         first, second = (owner.name for owner in self.claim.pairs[0][:2])
         middle = 0.5 * (self.low + self.high)
@@ -141,19 +164,16 @@ class _Search:
         # The only line of one joint says all.
         samples = _SAMPLES if len(middle) > 1 else _SAMPLES // 20
         q = self.low + generator(0).random((samples, len(middle))) * (self.high - self.low)
-        trees = hull_trees(
-            {
-                link: [(piece_of(each).parts, piece_of(each).radius) for each in shapes if each.link == link]
-                for link in (first, second)
-            }
-        )
-        poses = poses_at(robot, with_mimics(robot, self._values(robot, q)), len(q))
-        of = [poses[:, robot.links.index(link)] for link in (first, second)]
+        trees = hull_trees({link: of.leaves(link) for link in (first, second)})
         alone = self.claim.one_by_one(self.claim.pairs)
-        for row in np.flatnonzero(contacts(trees, first, second, *of)[:, 0] >= 0)[:_CONFIRMED]:
-            if in_contact(alone, q[row]):
-                self._see(0.0, q[row])
-                return True
+        for rows in np.array_split(q, samples // _BATCH):
+            look_at_clock()
+            poses = poses_at(of.robot, with_mimics(of.robot, self._values(of.robot, rows)), len(rows))
+            both = [poses[:, of.robot.links.index(link)] for link in (first, second)]
+            for row in np.flatnonzero(contacts(trees, first, second, *both)[:, 0] >= 0)[:_CONFIRMED]:
+                if in_contact(alone, rows[row]):
+                    self._see(0.0, rows[row])
+                    return True
         return False
 
     def prove(self) -> bool:
@@ -226,34 +246,40 @@ def untested_pairs(
     Those with few joints between them come first, and leave their time to the others; `report` takes how many are done,
     of how many.
     """
+    of = Links(robot, shapes)
+    # What reads the files is not counted.
     end = Deadline.after(seconds)
     found: dict[int, LinkPair] = {}
-    bodied = {shape.link for shape in shapes}
-    numbers = [i for i, (first, second, _) in enumerate(pairs) if {first, second} <= bodied]
-    for number in sorted(numbers, key=lambda i: len(_between(robot, (), pairs[i][:2]).joints)):
+    numbers = [i for i, (first, second, _) in enumerate(pairs) if {first, second} <= set(of.shapes)]
+    for number in sorted(numbers, key=lambda i: len(_ranges(robot, pairs[i][:2]))):
         first, second, reason = pairs[number]
         share = end.left / (len(numbers) - len(found))
-        found[number] = decide_pair(robot, shapes, (first, second), reason, share)
+        found[number] = decide_pair(of, (first, second), reason, share)
         if report is not None:
             report(len(found), len(numbers))
     return [found[number] for number in numbers]
 
 
-def _between(robot: Robot, shapes: Sequence[Shape], links: tuple[str, str]) -> _Between:
+def _between(of: Links, links: tuple[str, str]) -> _Between:
     """Return what decides about two links."""
+    ranges = _ranges(of.robot, links)
+    still = {name: low for name, (low, high) in ranges.items() if low == high}
+    joints = tuple(name for name in ranges if name not in still)
+    tree = tree_of(of.robot, Claimed(joints, still, None, frozenset(), 0.0, {}))
+    bodies = tuple(bodies_of((shape for link in links for shape in of.shapes[link]), tree))
+    claim = WorldClaim(tree, bodies, ((Owner(links[0]), Owner(links[1]), 0.0),), "shapes of the file")
+    limits = np.array([ranges[name] for name in joints]).reshape(-1, 2)
+    return _Between(claim, joints, limits, _levers(tree, bodies, limits))
+
+
+def _ranges(robot: Robot, links: tuple[str, str]) -> dict[str, tuple[float, float]]:
+    """Return the joints between two links that move by themselves, or by which others do, with their ranges."""
     above = {joint.child: joint for joint in robot.joints}
     chains = [[*_up(above, link)] for link in links]
     names = {joint.name for joint in chains[0]} ^ {joint.name for joint in chains[1]}
     moving = [joint for joint in robot.joints if joint.name in names and joint.kind != "fixed"]
     leaders = {joint.name if joint.mimic is None else joint.mimic.joint for joint in moving}
-    ranges = {joint.name: _range(joint) for joint in robot.joints if joint.name in leaders}
-    still = {name: low for name, (low, high) in ranges.items() if low == high}
-    joints = tuple(name for name in ranges if name not in still)
-    tree = tree_of(robot, Claimed(joints, still, None, frozenset(), 0.0, {}))
-    bodies = tuple(bodies_of(shapes, tree))
-    claim = WorldClaim(tree, bodies, ((Owner(links[0]), Owner(links[1]), 0.0),), "shapes of the file")
-    limits = np.array([ranges[name] for name in joints]).reshape(-1, 2)
-    return _Between(claim, joints, limits, _levers(tree, bodies, limits))
+    return {joint.name: _range(joint) for joint in robot.joints if joint.name in leaders}
 
 
 def _up(above: dict[str, Joint], link: str) -> Iterator[Joint]:

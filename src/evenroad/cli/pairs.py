@@ -31,7 +31,7 @@ class Pairs(RobotOptions):
     robot: Positional[str]
     """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     seconds: float = 60.0
-    """Time for all pairs, > 0."""
+    """Time for the proofs of all pairs, > 0; reading the files is not counted."""
     json: bool = False
     """Print JSON instead of a table."""
 
