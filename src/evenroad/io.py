@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import platform
 import sys
@@ -15,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
-from evenroad._arrays import set_fields
+from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_file, require_known
 from evenroad._files import Json, atomic_write, read_json_file
 from evenroad._seal import has_digest, with_digest
@@ -69,6 +70,7 @@ def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, ob
         "message": result.message,
         "query": {**terminals, **query},
         **{name: None if path is None else path.tolist() for name, path in paths.items()},
+        **({} if result.pieces is None else {"pieces": _as_texts(result.pieces)}),
         **{name: getattr(result, name) for name in same},
         "seconds": round(result.seconds, 6),
         "timings": {phase: round(value, 6) for phase, value in result.timings.items()},
@@ -115,7 +117,8 @@ def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
     else:
         count = result.path.shape[1]
         robot = getattr(result.world, "robot", None)
-        names = ("x", "y") if count == 2 else tuple(f"q{i}" for i in range(count))
+        poses = count == 2 or result.pieces is not None
+        names = ("x", "y", "angle")[:count] if poses else tuple(f"q{i}" for i in range(count))
         save_path_csv(path, result.path, names if robot is None else robot.joint_names)
 
 
@@ -204,6 +207,7 @@ def plan_of(record: object, path: str | os.PathLike[str]) -> tuple[PlanResult, d
             start=start,
             goals=goals,
             path=waypoints,
+            pieces=np.array(record["pieces"], dtype=np.float64) if "pieces" in record else None,
             origin=Origin(family="none", method="read from a file"),
             rule=str(record["rule"]),
             goal_index=index,
@@ -220,6 +224,11 @@ def plan_of(record: object, path: str | os.PathLike[str]) -> tuple[PlanResult, d
         why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
         raise BrokenFile(f"{path} is not a plan of evenroad: {why}") from error
     return result, query
+
+
+def _as_texts(pieces: Floats) -> list[list[float | str]]:
+    """Return the pieces of a car as JSON has them: an infinite curvature is the text "inf" or "-inf"."""
+    return [[each if math.isfinite(each) else str(each) for each in row] for row in pieces.tolist()]
 
 
 def versions() -> dict[str, str]:

@@ -78,6 +78,17 @@ def test_lengths_are_those_that_ompl_computes():
     np.testing.assert_allclose(CarSpace(POSITIONS, 1.0, reverse=False).distance(a, b), forwards, atol=1e-9)
 
 
+@pytest.mark.parametrize("reverse", [True, False])
+def test_one_piece_is_its_own_shortest_curve_whatever_rounding_does(reverse):
+    space, rng = CarSpace(POSITIONS, 0.5, reverse), np.random.default_rng(2)
+    starts, lengths = poses(400), rng.uniform(1e-3, 0.7, 400) * rng.choice([1, -1] if reverse else [1], 400)
+    after = [
+        driven(start, [(curvature, length)])[0](1.0)
+        for start, length, curvature in zip(starts, lengths, rng.choice([0.0, 2.0, -2.0], 400), strict=True)
+    ]
+    np.testing.assert_allclose(space.distance(starts, after), np.abs(lengths), rtol=1e-7)
+
+
 def test_a_car_that_may_reverse_has_no_longer_curves_and_none_is_shorter_than_a_straight_line_or_its_turn():
     a, b = poses(300), poses(300, 5)
     both, forwards = CarSpace(POSITIONS, 2.0).distance(a, b), CarSpace(POSITIONS, 2.0, reverse=False).distance(a, b)

@@ -246,8 +246,6 @@ def test_planners_of_roadmaps_and_trees_plan_for_a_car_that_may_reverse():
     assert result.proof == "exact"
     assert world.validate(result.path).all()
     assert result.cost == pytest.approx(world.space.distance(result.path[:-1], result.path[1:]).sum())
-    with pytest.raises(InvalidValue, match="reverse"):
-        er.plan(WORLDS["far on an image"], (5.3, 1.96, 0.31), (1.77, 0.77, 2.95))
 
 
 def test_a_footprint_may_be_given_as_a_value():

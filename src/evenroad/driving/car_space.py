@@ -73,6 +73,11 @@ class CarSpace(Space):
         return 3
 
     @property
+    def names(self) -> tuple[str, str, str]:
+        """What the coordinates are."""
+        return "x", "y", "the angle"
+
+    @property
     def is_directed(self) -> bool:
         """Whether a motion and its reverse differ: of a car that drives only forwards."""
         return not self.reverse
@@ -138,6 +143,12 @@ def as_pieces(rows: Floats, space: CarSpace) -> Floats:
     on_the_spot = side != 0.0
     curvature = np.where(on_the_spot, np.copysign(np.inf, side), 0.0)
     return np.column_stack([curvature, length / np.where(on_the_spot, space.spot, 1.0)])
+
+
+def cusps_of(pieces: Floats) -> int:
+    """Return how often pieces, (k, 2), change between forwards and backwards; turns on the spot do not count."""
+    signs = np.sign(pieces[np.isfinite(pieces[:, 0]), 1])
+    return int(np.count_nonzero(signs[1:] != signs[:-1]))
 
 
 _NO_LENGTH = 1e-12

@@ -28,6 +28,7 @@ from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robots.robot import ConfigurationLike
 from evenroad.scenes.scene import Scene
+from evenroad.space.protocol import is_directed
 from evenroad.world import World
 
 if TYPE_CHECKING:
@@ -179,6 +180,8 @@ def _as_planner(planner: object) -> Planner | Roadmap:
 
 def _within(planner: Planner | Roadmap, world: World) -> Planner:
     """Return the planner in a world: a roadmap within it."""
+    if is_directed(world.space) and not getattr(planner, "is_directed", False):
+        raise InvalidValue(f"only CarSearch plans for a car that drives only forwards, got {shown(planner)}")
     if isinstance(planner, Roadmap):
         return planner.within(world)
     if isinstance(planner, WorldRoadmap) and planner.world is not world:

@@ -27,7 +27,6 @@ from evenroad.scenes.scan import allowed_near_ends, open_everywhere, scene_seen_
 from evenroad.scenes.scene import Scene
 from evenroad.scenes.scene_file import load_scene
 from evenroad.scenes.states import as_configuration, at_states
-from evenroad.space.protocol import is_directed
 from evenroad.world import World
 
 if TYPE_CHECKING:
@@ -36,7 +35,9 @@ if TYPE_CHECKING:
 _ANY_PATH: Wanted = {}
 _NAMED = str, Pose, PoseGoal
 """Types of goals that can be shown as text."""
-OF_MAP = ("radius", "clearance", "unknown_is_free", "rules")
+OF_CAR = ("footprint", "turning_radius", "reverse", "holonomic")
+OF_MAP = ("radius", *OF_CAR, "clearance", "unknown_is_free", "rules")
+_OF_WORLD = ("radius", *OF_CAR, "clearance")
 OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
 
@@ -55,8 +56,8 @@ def read_problem(
                 _ = world.checker
         return problem_in(world, start, goal, reading, wanted)
     if isinstance(world, str | os.PathLike):
-        # Names and suffixes of maps and scenes are the same, so the radius decides.
-        if "radius" in of_world:
+        # Names and suffixes of maps and scenes are the same, so the radius or the footprint decides.
+        if "radius" in of_world or "footprint" in of_world:
             # Imported late: a plan of an arm reads no image.
             from evenroad.world import load_map
 
@@ -65,13 +66,15 @@ def read_problem(
                 world = load_map(world, **reading_of_map)
         elif "robot" not in of_world:
             raise InvalidValue(
-                f"{os.fspath(world)!r} needs radius=, of a disk on this map, or robot=, the arm in this scene"
+                f"{os.fspath(world)!r} needs radius=, of a disk on this map, or robot=, the arm in this scene;"
+                " or footprint=, of a car on this map"
             )
     if _is_map(world):
         _require_known(of_world, OF_MAP, "a map")
-        if "radius" not in of_world:
+        if "radius" not in of_world and "footprint" not in of_world:
             raise InvalidValue("a map goes with radius=, that of the disk that moves on it, in map units")
-        world = world.world(of_world.pop("radius"), clearance=of_world.pop("clearance", 0.0))
+        with off_the_clock():
+            world = world.world(**{name: of_world.pop(name) for name in tuple(of_world) if name in _OF_WORLD})
     if isinstance(world, Scene | str | os.PathLike):
         _require_known(of_world, OF_SCENE, "a scene")
         if "robot" not in of_world:
@@ -89,8 +92,6 @@ def read_problem(
             "world must be a World, a GridMap with radius=, or a Scene with robot=; or the name or file of one, got"
             f" {shown(world)}"
         )
-    if is_directed(world.space):
-        raise InvalidValue(f"no planner drives only forwards yet: reverse must be True to plan, got {shown(world)}")
     return Problem(world, *as_start_and_goals(start, goal, world.space), **wanted)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from evenroad._arrays import Floats, Ints32
 from evenroad._call import explains_calls
 from evenroad.collision.validate import MeshCheck
+from evenroad.driving.car_space import cusps_of
 from evenroad.errors import InvalidValue
 from evenroad.planning.result_html import as_html
 from evenroad.points.pointset import Origin
@@ -97,6 +98,8 @@ class PlanResult:
         so.
     milestone_path : ndarray, shape (q, dim), or None
         The path before shortcutting, such as the path along the roadmap.
+    pieces : ndarray, shape (k, 2), or None
+        What a car drives along `path`: curvatures and signed lengths, as of :meth:`evenroad.driving.CarSpace.pieces`.
     proof : str or None
         Kind of proof for the motions of `path`: ``exact`` (no gap, up to rounding), ``certified`` (no gap), or
         ``resolution`` (free at states close together); None without a path.
@@ -159,6 +162,7 @@ class PlanResult:
     goal_index: int | None = None
     path: Floats | None = None
     milestone_path: Floats | None = None
+    pieces: Floats | None = None
     proof: str | None = None
     cost: float | None = None
     milestone_cost: float | None = None
@@ -236,6 +240,11 @@ class PlanResult:
     def seconds(self) -> float:
         """Wall time of the query [s]: the sum of `timings`."""
         return sum(self.timings.values())
+
+    @property
+    def cusps(self) -> int | None:
+        """How often a car changes between forwards and backwards; None of what is no car's path."""
+        return None if self.pieces is None else cusps_of(self.pieces)
 
     @cached_property
     def length(self) -> float | None:

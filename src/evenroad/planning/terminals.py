@@ -82,7 +82,8 @@ def turns_at_end(world: World, path: Floats, goal: Floats) -> str:
     period = period_of(world.space)
     if period is None or not (away := np.rint((path[-1] - goal) / period)).any():
         return ""
-    names = getattr(getattr(world, "robot", None), "group", None) or [f"coordinate {k}" for k in range(len(goal))]
+    own = getattr(getattr(world, "robot", None), "group", None) or getattr(world.space, "names", None)
+    names = own or [f"coordinate {k}" for k in range(len(goal))]
     said = ", ".join(f"{names[k]} ends at {path[-1][k]:.6g}" for k in np.flatnonzero(away))
     return f"; {said}, whole turns from the goal"
 

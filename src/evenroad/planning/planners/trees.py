@@ -102,7 +102,12 @@ def default_planner(world: World, *, improve: bool = False) -> Planner:
     connector = connector_of(world)
     if connector is None:
         from evenroad.constraints.constrained_world import KeptWorld
+        from evenroad.driving.car_space import CarSpace
 
+        if isinstance(world.space, CarSpace):
+            from evenroad.planning.planners.car import CarSearch
+
+            return CarSearch()
         return RRTConnect(improve) if isinstance(world, KeptWorld) else _growing(improve)
     if connector is CELLS:
         return GridSearch(improve)

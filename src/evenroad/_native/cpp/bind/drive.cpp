@@ -2,8 +2,7 @@
 #include <nanobind/stl/optional.h>
 
 #include "bind/arrays.hpp"
-#include "drive/checks.hpp"
-#include "drive/words.hpp"
+#include "drive/car_query.hpp"
 
 namespace evenroad::bind {
 
@@ -15,6 +14,8 @@ namespace {
 constexpr std::size_t MOST_CELLS = 1'000'000'000;
 /// Farther than this from the reference point no corner is [cells].
 constexpr double LARGEST_FOOTPRINT = 1e5;
+/// Largest number of poses along a path.
+constexpr double MOST_POSES = 1e7;
 /// More turns than these are a mistake [rad].
 constexpr double LARGEST_ANGLE = 1e6;
 
@@ -241,6 +242,50 @@ nb::object pieces_between(const drive::Steering& steering, nb::handle a, nb::han
   return as_rows(rows_of(steering, pieces));
 }
 
+/// Poses along pieces, in map units; with each the number of its piece.
+nb::object poses_along(const drive::Steering& steering, nb::handle start, nb::handle pieces, double step) {
+  const drive::Pose from = pose_of(start, "start");
+  const std::vector<drive::Piece> driven = pieces_of(pieces);
+  require(step > 0.0, "step must be > 0");
+  double length = 0.0;
+  for (const drive::Piece& piece : driven) length += std::abs(piece.length);
+  require(length / step < MOST_POSES, "step must be larger: there would be more than ten million poses");
+  OwnMatrix<double> rows(0, 3);
+  for (const drive::Pose& pose : drive::poses_along(steering, from, driven, step)) {
+    rows.append(std::array<double, 3>{pose.x, pose.y, pose.angle});
+  }
+  return as_rows(std::move(rows));
+}
+
+void make_query(drive::CarQuery* self, const drive::Vehicle& vehicle, const drive::Steering& steering, nb::handle start,
+                nb::handle goal, std::int64_t variant) {
+  const drive::Pose from = vehicle.to_cells(pose_of(start, "start")), to = vehicle.to_cells(pose_of(goal, "goal"));
+  require(variant >= 0, "variant must be >= 0");
+  without_gil([&] {
+    drive::Checks checks(vehicle);
+    require(checks.is_free(from) && checks.is_free(to), "start and goal must be free");
+    new (self) drive::CarQuery(vehicle, steering.in(vehicle.scale()), from, to, static_cast<std::uint64_t>(variant));
+  });
+}
+
+bool search(drive::CarQuery& query, std::int64_t rounds) {
+  require_budget(rounds, "rounds");
+  return without_gil([&] { return query.search(rounds); });
+}
+
+/// Pieces of a path, in map units.
+nb::object as_map_rows(const drive::CarQuery& query, std::span<const drive::Piece> pieces) {
+  OwnMatrix<double> rows = rows_of(query.steering(), pieces);
+  for (std::size_t i = 0; i < rows.rows; i++) rows(i, 1) *= query.vehicle().scale();
+  return as_rows(std::move(rows));
+}
+
+nb::tuple car_path(drive::CarQuery& query, std::int64_t shortcuts) {
+  require_budget(shortcuts, "shortcuts");
+  const drive::CarPath path = without_gil([&] { return query.path(shortcuts); });
+  return nb::make_tuple(as_map_rows(query, path.pieces), as_map_rows(query, path.raw));
+}
+
 }  // namespace
 
 void add_drive(nb::module_& module) {
@@ -253,7 +298,8 @@ void add_drive(nb::module_& module) {
       .def("__init__", &make_steering, "radius"_a, "spot"_a, "is_reversing"_a, "cusp"_a)
       .def("distances", &curve_lengths, "a"_a.none(), "b"_a.none())
       .def("poses_between", &poses_between, "a"_a.none(), "b"_a.none(), "shares"_a.none())
-      .def("pieces_between", &pieces_between, "a"_a.none(), "b"_a.none());
+      .def("pieces_between", &pieces_between, "a"_a.none(), "b"_a.none())
+      .def("poses_along", &poses_along, "start"_a.none(), "pieces"_a.none(), "step"_a);
   nb::class_<drive::Contact>(part, "Contact", "An occupied cell that a footprint overlaps.")
       .def_ro("row", &drive::Contact::row)
       .def_ro("column", &drive::Contact::column)
@@ -267,6 +313,14 @@ void add_drive(nb::module_& module) {
       .def("pieces_free", &pieces_free, "steering"_a, "start"_a.none(), "pieces"_a.none())
       .def("gaps", &gaps, "q"_a.none())
       .def("contact", &contact, "q"_a.none());
+  nb::class_<drive::CarQuery>(part, "CarQuery", "A search for the path of a car between two free poses.")
+      .def("__init__", &make_query, "vehicle"_a, "steering"_a, "start"_a.none(), "goal"_a.none(), "variant"_a,
+           nb::keep_alive<1, 2>())
+      .def("search", &search, "rounds"_a)
+      .def("path", &car_path, "shortcuts"_a)
+      .def_prop_ro("nodes", &drive::CarQuery::nodes)
+      .def_prop_ro("poses", [](const drive::CarQuery& query) { return query.counts().poses; })
+      .def_prop_ro("motions", [](const drive::CarQuery& query) { return query.counts().motions; });
 }
 
 }  // namespace evenroad::bind

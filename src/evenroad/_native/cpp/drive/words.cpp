@@ -24,6 +24,15 @@ double turned_left(double angle) {
   return turn < 2.0 * PI - NO_TURN ? turn : 0.0;
 }
 
+/// Return an angle in [-pi, pi], one that rounding has moved below 0, or beyond pi, where it was.
+double forwards(double angle) {
+  const double turn = wrapped(angle);
+  return std::abs(turn) < NO_TURN ? 0.0 : turn < NO_TURN - PI ? turn + 2.0 * PI : turn;
+}
+
+/// The same of an angle that rounding has moved above 0, or beyond -pi.
+double backwards(double angle) { return -forwards(-angle); }
+
 /// The first and the last turn of a word of four or five.
 struct Outer {
   double first, last;
@@ -70,12 +79,11 @@ class Curves {
  private:
   /// A turn, a straight drive, a turn.
   void add_straight() {
-    if (const double v = wrapped(phi_ - same_.angle); same_.angle >= 0.0 && v >= 0.0) {
-      add({{1, same_.angle}, {0, same_.r}, {1, v}});
-    }
+    const double first = forwards(same_.angle), last = forwards(phi_ - first);
+    if (first >= 0.0 && last >= 0.0) add({{1, first}, {0, same_.r}, {1, last}});
     if (other_.r < 2.0) return;
-    const double u = std::sqrt(other_.r * other_.r - 4.0), t = wrapped(other_.angle + std::atan2(2.0, u));
-    if (const double v = wrapped(t - phi_); t >= 0.0 && v >= 0.0) add({{1, t}, {0, u}, {-1, v}});
+    const double u = std::sqrt(other_.r * other_.r - 4.0), t = forwards(other_.angle + std::atan2(2.0, u));
+    if (const double v = forwards(t - phi_); t >= 0.0 && v >= 0.0) add({{1, t}, {0, u}, {-1, v}});
   }
 
   /// Three turns, or four pieces, that begin and end in different directions; flipped, they are driven from their end.
@@ -83,17 +91,18 @@ class Curves {
     const double x = is_flipped ? x_ * cosine_ + y_ * sine_ : x_, y = is_flipped ? x_ * sine_ - y_ * cosine_ : y_;
     const Polar same(x - sine_, y - 1.0 + cosine_), other(x + sine_, y - 1.0 - cosine_);
     if (same.r <= 4.0) {
-      const double u = -2.0 * std::asin(0.25 * same.r), t = wrapped(same.angle + 0.5 * u + PI);
+      const double u = -2.0 * std::asin(0.25 * same.r), t = forwards(same.angle + 0.5 * u + PI);
       const double v = wrapped(phi_ - t + u);
       if (t >= 0.0 && u <= 0.0) add({{1, t}, {-1, u}, {1, v}}, is_flipped);
     }
     if (same.r >= 2.0) {
-      const double r = std::sqrt(same.r * same.r - 4.0), u = 2.0 - r, t = wrapped(same.angle + std::atan2(r, -2.0));
-      const double v = wrapped(phi_ - 0.5 * PI - t);
+      const double r = std::sqrt(same.r * same.r - 4.0), u = 2.0 - r, t = forwards(same.angle + std::atan2(r, -2.0));
+      const double v = backwards(phi_ - 0.5 * PI - t);
       if (t >= 0.0 && u <= 0.0 && v <= 0.0) add({{1, t}, {-1, -0.5 * PI}, {0, u}, {1, v}}, is_flipped);
     }
     if (other.r >= 2.0) {
-      const double t = Polar(1.0 + cosine_ - y, x + sine_).angle, u = 2.0 - other.r, v = wrapped(t + 0.5 * PI - phi_);
+      const double t = forwards(Polar(1.0 + cosine_ - y, x + sine_).angle), u = 2.0 - other.r;
+      const double v = backwards(t + 0.5 * PI - phi_);
       if (t >= 0.0 && u <= 0.0 && v <= 0.0) add({{1, t}, {-1, -0.5 * PI}, {0, u}, {-1, v}}, is_flipped);
     }
   }
@@ -103,19 +112,21 @@ class Curves {
     const double xi = x_ + sine_, eta = y_ - 1.0 - cosine_, square = xi * xi + eta * eta;
     if (const double rho = 0.25 * (2.0 + std::sqrt(square)); rho <= 1.0) {
       const double u = std::acos(rho);
-      const auto [t, v] = outer(xi, eta, u, -u);
+      const auto [first, last] = outer(xi, eta, u, -u);
+      const double t = forwards(first), v = backwards(last);
       if (t >= 0.0 && v <= 0.0) add({{1, t}, {-1, u}, {1, -u}, {-1, v}});
     }
     if (const double rho = (20.0 - square) / 16.0; rho >= 0.0 && rho <= 1.0) {
       const double u = -std::acos(rho);
-      const auto [t, v] = outer(xi, eta, u, u);
+      const auto [first, last] = outer(xi, eta, u, u);
+      const double t = forwards(first), v = forwards(last);
       if (t >= 0.0 && v >= 0.0) add({{1, t}, {-1, u}, {1, u}, {-1, v}});
     }
     if (square < 4.0) return;
     const double u = 4.0 - std::sqrt(square - 4.0);
     if (u > 0.0) return;
-    const double t = wrapped(std::atan2((4.0 - u) * xi - 2.0 * eta, -2.0 * xi + (u - 4.0) * eta));
-    const double v = wrapped(t - phi_);
+    const double t = forwards(std::atan2((4.0 - u) * xi - 2.0 * eta, -2.0 * xi + (u - 4.0) * eta));
+    const double v = forwards(t - phi_);
     if (t >= 0.0 && v >= 0.0) add({{1, t}, {-1, -0.5 * PI}, {0, u}, {1, -0.5 * PI}, {-1, v}});
   }
 
