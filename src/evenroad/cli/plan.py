@@ -32,6 +32,7 @@ class PlanOptions(SamplerOptions):
     groups: ClassVar[dict[str, tuple[str, ...]]] = {
         "from where to where": (
             *("help", "world", "robot_radius", "robot", "roadmap", "start", "goal", "goal_pose"),
+            *("footprint", "turning_radius", "forward_only", "holonomic", "cusp_cost"),
             *("tip", "frame", "free_axis", "tolerance", "deg", "clearance", "unknown_is_free", "rules"),
         ),
         "on the way": ("via", "straight", "away", "upright", "upright_axis", "constraint"),
@@ -94,7 +95,7 @@ class PlanDisk(PlanOptions):
     top-left corner, dark = obstacle; on a map of the MovingAI benchmarks (.map): the same, a letter a pixel; or on a
     ROS map_server file (.yaml): unit = metre, map frame, y up.
 
-    For an arm in a scene give --robot instead; its options: evenroad plan --robot --help
+    For an arm in a scene give --robot instead; its options: evenroad plan --robot --help; for a car --footprint.
 
     Example: evenroad plan office.yaml --start 1 2 --goal 8.5 3 --robot-radius 0.25
     """
@@ -121,6 +122,47 @@ class PlanDisk(PlanOptions):
     guarantees: bool = False
     """Print what the roadmap guarantees: from which clearance on it has a path if one exists, and how long that path
     is at most.  With PRM; the sampler cover guarantees most."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanCar(PlanOptions):
+    """Plan a short path for a car or another footprint on a map, write a JSON result and a picture of what it sweeps.
+
+    All that the footprint sweeps along its curves is tested exactly.  Poses are x y angle, an angle of 0 along x.
+
+    Example: evenroad plan office.yaml --footprint "[[-0.45, -0.31], [0.45, -0.31], [0.45, 0.31], [-0.45, 0.31]]"
+    --turning-radius 0.6 --start 1 2 90 --goal 8.5 3 0 --deg
+    """
+
+    planner = "evenroad.cli.plan_car:plan_car"
+
+    world: Positional[Path]
+    """A map: a .png, .pgm or .bmp image, a ROS map_server .yaml, or a MovingAI .map."""
+    start: tuple[str, ...]
+    """Where to start: x y angle in map units and radians."""
+    goal: Repeatable[tuple[tuple[str, ...], ...]]
+    """Where to go: x y angle.  You can give several: the path ends at the first one reached."""
+    footprint: str
+    """Plan for this footprint: corners "[[x, y], ...]" around the reference point, x forwards, y to the left, in map
+    units; or a list of several polygons."""
+    turning_radius: float = 0.0
+    """Least radius of a turn, >= 0, in map units; 0 turns on the spot."""
+    forward_only: bool = False
+    """Never drive backwards."""
+    holonomic: bool = False
+    """Move in every direction, and turn on the way."""
+    cusp_cost: float | None = None
+    """Length that a change between forwards and backwards counts, >= 0 (default: the turning radius)."""
+    deg: bool = False
+    """Read the angles of start and goal in degrees."""
+    clearance: float = 0.0
+    """Distance to keep from every obstacle, >= 0, in map units; at corners of the footprint up to 2 % more."""
+    unknown_is_free: bool = False
+    """Treat unknown cells of a ROS map as free."""
+    rules: str | None = None
+    """Read a ROS map by the rules of nav2 (since April 2025; the default) or ros1 (and nav2 before)."""
+    csv: bool = False
+    """Also write the path as OUT.csv: poses x, y, angle, a cell apart."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -321,18 +363,24 @@ class Demo:
         ).run()
 
 
-def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
+_KINDS: dict[str, type[PlanOptions]] = {"--robot-radius": PlanDisk, "--robot": PlanArm, "--footprint": PlanCar}
+"""The option that names a robot -> the class of its options."""
+
+
+def plan_type(words: Sequence[str]) -> type[PlanOptions]:
     """Return the class of a command line by its robot; InvalidValue if its options do not go together."""
     given = given_options(words)
-    for_arm = "--robot" in given
-    chosen: type[PlanDisk] | type[PlanArm] = PlanArm if for_arm else PlanDisk
+    named = [option for option in _KINDS if option in given]
+    chosen = _KINDS[named[-1]] if named else PlanDisk
     if not HELP.isdisjoint(words):
         return chosen
-    require_known_options("evenroad plan", words, option_names(PlanDisk) | option_names(PlanArm))
-    if for_arm == ("--robot-radius" in given):
+    known = {option: option_names(kind) for option, kind in _KINDS.items()}
+    require_known_options("evenroad plan", words, set().union(*known.values()))
+    if len(named) != 1:
         text = "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not"
-        raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}; all options: evenroad plan --help")
-    other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
-    for option in sorted(given & (option_names(other) - option_names(chosen))):
+        also = "; --footprint (a car) is the third" if "--footprint" in named else ""
+        raise InvalidValue(f"{text} {'both' if named else 'neither'}{also}; all options: evenroad plan --help")
+    for option in sorted(given - known[named[0]]):
+        needs = " or ".join(each for each, options in known.items() if option in options)
         raise InvalidValue(f"{option} goes with {needs} only")
     return chosen

@@ -113,9 +113,10 @@ def made_of(world: World, **names: str | None) -> dict[str, dict[str, str | None
         digests = {"robot": world.robot.fingerprint(), "scene": world.scene.fingerprint()}
     else:
         # Imported late: a plan of an arm has no map.
+        from evenroad.driving.car_world import CarWorld
         from evenroad.world.gridmap.disk_world import DiskWorld
 
-        assert isinstance(world, DiskWorld), "a plan is of an arm or of a disk"
+        assert isinstance(world, DiskWorld | CarWorld), "a plan is of an arm, a disk or a car"
         digests = {"map": world.fingerprint()}
     return {name: {"name": names.get(name), "sha256": digest} for name, digest in digests.items()}
 

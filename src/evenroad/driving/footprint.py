@@ -128,6 +128,29 @@ class Footprint:
         footprint._set(self.outlines, tuple(_rounded(part, by) for part in self.parts))
         return footprint
 
+    def placed(self, pose: npt.ArrayLike, polygons: Sequence[Floats]) -> list[Floats]:
+        """Return where polygons of the footprint, its `parts` or `outlines`, are at a pose.
+
+        Parameters
+        ----------
+        pose : array_like, shape (3,)
+        polygons : sequence of ndarrays, shape (n, 2)
+
+        Returns
+        -------
+        list of ndarrays, shape (n, 2)
+
+        Examples
+        --------
+        >>> from evenroad.driving import Footprint
+        >>> box = Footprint([(0, 0), (2, 0), (2, 1), (0, 1)])
+        >>> box.placed((3, 4, 0), box.parts)[0].tolist()
+        [[3.0, 4.0], [5.0, 4.0], [5.0, 5.0], [3.0, 5.0]]
+        """
+        x, y, angle = np.asarray(pose, dtype=np.float64).tolist()
+        turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        return [polygon @ turn + np.array([x, y]) for polygon in polygons]
+
     def native(self, cell: float) -> NativeFootprint:
         """Return it as the native kernel takes it, in cells of a side in map units."""
         parts = [part / cell for part in self.parts]

@@ -7,6 +7,7 @@ import os
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
@@ -15,7 +16,7 @@ from evenroad.viz import style
 from evenroad.viz.sheet import Entry, Sheet, View, save_png
 
 if TYPE_CHECKING:
-    from evenroad.world.gridmap import DiskWorld
+    from evenroad.world.gridmap import DiskWorld, GridMap
 
 LONG_SIDE = 1200
 """Pixels of the long side of what is shown of a map."""
@@ -50,7 +51,7 @@ def draw_plan(result: PlanResult, world: DiskWorld) -> Image.Image:
 
 def draw_plan_view(result: PlanResult, world: DiskWorld) -> View:
     """Return what :func:`draw_plan` shows of the map and the plan, without frame and words."""
-    low, high = _shown(result, world)
+    low, high = shown_of(world.grid, result, world.radius)
     view = View(low, high, LONG_SIDE / float((high - low).max()), up=world.grid.frame.y_up)
     _draw_map(view, result, world)
     if result.roadmap is not None:
@@ -88,16 +89,23 @@ _MAP_COLOURS = (
 
 
 def _draw_map(view: View, result: PlanResult, world: DiskWorld) -> None:
-    """Paint each pixel with the colour of its cell.
-
-    If it is proved that there is no path, the components of start and goal have colours of their own.
-    """
-    grid = world.grid
-    kinds = np.where(grid.occupied, 1, 0).astype(np.uint8)
-    kinds[grid.unknown] = 2
+    """Paint the map; if it is proved that there is no path, the components of start and goal have their own colours."""
+    kinds = kinds_of(world.grid)
     if result.status is Status.NOT_CONNECTED and not world.may_connect(result.start, result.goal):
         for configuration, kind in ((result.start, 3), (result.goal, 4)):
             kinds[world.cells_of(world.component(configuration))] = kind
+    paint_cells(view, world.grid, kinds)
+
+
+def kinds_of(grid: GridMap) -> npt.NDArray[np.uint8]:
+    """Return the number of each cell's colour, (rows, cols)."""
+    kinds = np.where(grid.occupied, 1, 0).astype(np.uint8)
+    kinds[grid.unknown] = 2
+    return kinds
+
+
+def paint_cells(view: View, grid: GridMap, kinds: npt.NDArray[np.uint8]) -> None:
+    """Paint each pixel with the colour of its cell."""
     cells = Image.fromarray(kinds)
     cells.putpalette([part for colour in _MAP_COLOURS for part in ImageColor.getrgb(colour)[:3]])
     # Positions of the image's corners in the map's pixels, yaw included.
@@ -108,9 +116,9 @@ def _draw_map(view: View, result: PlanResult, world: DiskWorld) -> None:
     view.image.paste(turned.convert("RGB"))
 
 
-def _shown(result: PlanResult, world: DiskWorld) -> tuple[Floats, Floats]:
+def shown_of(grid: GridMap, result: PlanResult, reach: float) -> tuple[Floats, Floats]:
     """Return the lower and upper corner of what is shown: what is known of the map and the query, with a margin."""
-    frame, known = world.grid.frame, ~world.grid.unknown
+    frame, known = grid.frame, ~grid.unknown
     rows, cols = (np.flatnonzero(known.any(axis=axis)) for axis in (1, 0))
     if not rows.size:
         rows, cols = np.arange(frame.rows), np.arange(frame.cols)
@@ -118,7 +126,7 @@ def _shown(result: PlanResult, world: DiskWorld) -> tuple[Floats, Floats]:
     corners = frame.to_map(np.array(list(sides), dtype=float))
     if known.all():
         return corners.min(axis=0), corners.max(axis=0)
-    disks = [to_axes + world.radius * np.array([[-1.0], [1.0]]) for to_axes in (result.start, result.goal)]
-    shown = np.concatenate([corners, *disks])
+    around = [end[:2] + reach * np.array([[-1.0], [1.0]]) for end in (result.start, result.goal)]
+    shown = np.concatenate([corners, *around])
     margin = 0.03 * (shown.max(axis=0) - shown.min(axis=0)).max()
     return shown.min(axis=0) - margin, shown.max(axis=0) + margin

@@ -10,9 +10,11 @@ from PIL import Image
 from evenroad._checks import as_file
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.constrained_world import KeptWorld
+from evenroad.driving.car_world import CarWorld
 from evenroad.errors import NotAvailable
 from evenroad.planning.result import PlanResult
 from evenroad.viz.arm import draw_arm_plan
+from evenroad.viz.car import draw_car_plan
 from evenroad.viz.plan import draw_plan
 from evenroad.viz.sheet import save_png
 from evenroad.world import World
@@ -34,11 +36,13 @@ def plot_result(
         world = world.world
     if isinstance(world, DiskWorld):
         picture = draw_plan(result, world)
+    elif isinstance(world, CarWorld):
+        picture = draw_car_plan(result, world)
     elif isinstance(world, ArmWorld):
         picture = draw_arm_plan(result, world)
     else:
         known = "its world is not known: plot(world=...)" if world is None else f"its world is a {type(world).__name__}"
-        raise NotAvailable(f"plans of disks on maps and of arms can be drawn, but of this one {known}")
+        raise NotAvailable(f"plans of disks and cars on maps and of arms can be drawn, but of this one {known}")
     return _kept(picture, path)
 
 

@@ -74,6 +74,10 @@ class View:
         at, most = self.pixels(centre[np.newaxis])[0], self.scale * radius
         self._draw.circle(at, most, fill, edge, round(FINER * width))
 
+    def polygon(self, corners: Floats, fill: Colour | None, edge: Colour | None = None) -> None:
+        """Draw a polygon, (n, 2), or its edge."""
+        self._draw.polygon(self.pixels(corners), fill, edge, FINER)
+
     def dot(self, position: Floats, colour: Colour, radius: float) -> None:
         """Draw a dot with a white rim."""
         for size, fill in ((radius + 1, "white"), (radius, colour)):
