@@ -35,3 +35,12 @@ def generator(rng: RngLike) -> np.random.Generator:
 def seed_of(rng: RngLike) -> int | None:
     """Return the seed of `rng` if it is an int, else None."""
     return int(rng) if isinstance(rng, int | np.integer) else None
+
+
+def variant_of(rng: RngLike) -> int:
+    """Return the variant of the sequence that drives the trees: 0 is the tuned one; each other seed has its own."""
+    if type(rng) is int and rng >= 0:
+        # Making a generator for it takes as long as a short plan.
+        return rng
+    seed, drawn = seed_of(rng), generator(rng)
+    return int(drawn.integers(1, 2**31)) if seed is None else seed

@@ -12,7 +12,7 @@ from evenroad._arrays import Floats, Ints
 from evenroad._call import explains_calls, require_options
 from evenroad._checks import as_batch, require_count
 from evenroad._native.planning import ManyQueries
-from evenroad._rng import RngLike
+from evenroad._rng import RngLike, variant_of
 from evenroad._threads import in_order, processors
 from evenroad._time_limit import within
 from evenroad.collision.arm_world import ArmWorld
@@ -21,7 +21,7 @@ from evenroad.planning.connector import Smooth, require_smooth
 from evenroad.planning.connectors import RESTART, drivers_of, smoothing_of
 from evenroad.planning.many_results import Part, PlanResults, joined
 from evenroad.planning.plan import budget_of, plan
-from evenroad.planning.planners.trees import TreesGoOn, variant_of
+from evenroad.planning.planners.trees import TreesGoOn
 from evenroad.planning.read_problem import is_world
 from evenroad.planning.result import PlanResult
 from evenroad.planning.terminals import from_start_to_goal

@@ -12,7 +12,7 @@ from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._checks import counted, require_count
 from evenroad._native.planning import Drivers, Points, answer, shorten
-from evenroad._rng import RngLike
+from evenroad._rng import RngLike, variant_of
 from evenroad._shared import OwnLock, once
 from evenroad.collision.arm_world import VALIDATION_TOLERANCE, ArmWorld
 from evenroad.errors import InvalidValue, shown
@@ -21,7 +21,6 @@ from evenroad.planning.arm_trees import checks_of
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.connectors import drivers_of
 from evenroad.planning.make_result import make_result, solution, unreached
-from evenroad.planning.planners.trees import variant_of
 from evenroad.planning.problem import Problem
 from evenroad.planning.read_problem import problem_in, reaching
 from evenroad.planning.reading import Goal, Reading

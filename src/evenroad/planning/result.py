@@ -255,10 +255,7 @@ class PlanResult:
 
     @cached_property
     def bodies(self) -> str | None:
-        """The kinds of the robot's bodies that the answer is about, as ``hulls and meshes`` or ``capsules``.
-
-        None for worlds other than an arm's.
-        """
+        """Kinds of bodies that the answer is about, as ``hulls and meshes`` or ``capsules``; None of what is no arm."""
         return getattr(self.world, "bodies", None)
 
     @property

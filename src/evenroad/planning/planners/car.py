@@ -13,6 +13,7 @@ from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
 from evenroad._native.drive import CarQuery, Steering
+from evenroad._rng import variant_of
 from evenroad._time_limit import BudgetSpent, until
 from evenroad.driving.car_space import CarSpace, as_pieces, cusps_of
 from evenroad.driving.car_world import LARGEST_ANGLE, CarWorld
@@ -20,7 +21,6 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.planning.answer import failed, in_its_time, shown_apart
 from evenroad.planning.attempt import Attempt
 from evenroad.planning.make_result import path_message, solution
-from evenroad.planning.planners.trees import variant_of
 from evenroad.planning.problem import Problem
 from evenroad.planning.refusal import refusal
 from evenroad.planning.result import PlanResult, Status

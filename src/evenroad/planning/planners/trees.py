@@ -13,7 +13,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad._native.planning import Answer
-from evenroad._rng import RngLike, generator, seed_of
+from evenroad._rng import variant_of
 from evenroad._time_limit import seconds_left
 from evenroad.errors import InvalidValue
 from evenroad.planning.answer import connected, gave_up, in_its_time, shown_apart
@@ -234,15 +234,6 @@ def _solved(problem: Problem, connector: Connector, found: Answer) -> PlanResult
 def _length(path: Floats, native: float, world: World) -> float:
     """Return the length of a path. NumPy sums eight or more numbers in another order, so the last bit may differ."""
     return native if len(path) <= 8 else path_length(path, world.space)
-
-
-def variant_of(rng: RngLike) -> int:
-    """Return the variant of the sequence that drives the trees: 0 is the tuned one; each other seed has its own."""
-    if type(rng) is int and rng >= 0:
-        # Making a generator for it takes as long as a short plan.
-        return rng
-    seed, drawn = seed_of(rng), generator(rng)
-    return int(drawn.integers(1, 2**31)) if seed is None else seed
 
 
 def _connection(attempt: Attempt, connector: Connector, most: int, variant: int) -> Connection:
