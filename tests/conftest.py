@@ -1,5 +1,7 @@
 """How hypothesis tries its examples in all tests, and what tests of arms share."""
 
+from itertools import count
+
 import pytest
 from hypothesis import settings
 
@@ -8,12 +10,14 @@ settings.load_profile("patient")
 
 OF_ARMS = ("robots", "loading", "scenes", "collision", "poses", "infeasibility")
 """Folders whose tests read robots of their own making: each has a cache of its own."""
+_NUMBERS = count()
 
 
 @pytest.fixture(autouse=True)
 def _a_cache_of_its_own(request, tmp_path_factory, monkeypatch):
     if any(folder in request.path.parts for folder in OF_ARMS):
-        monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path_factory.mktemp("cache")))
+        # The few that keep something make it: pytest would look through all folders of earlier tests for a new one.
+        monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path_factory.getbasetemp() / "caches" / str(next(_NUMBERS))))
 
 
 @pytest.fixture(scope="session")
