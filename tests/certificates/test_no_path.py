@@ -242,6 +242,14 @@ def test_flipped_bits_never_stop_the_checker(caught):
     assert refused > 100
 
 
+def test_a_ball_that_is_no_number_is_refused_without_a_warning(caught):
+    place, data = caught
+    parts = Parts.of(data)
+    # A signalling nan, of which the conversion to more digits warns.
+    parts.balls["ball"].view("<u4")[0, 1] = 0x7FA00000
+    assert not accepts(parts.data, place.inputs)
+
+
 def test_a_file_says_what_it_shows(caught):
     place, data = caught
     shown = verify_no_path(data, place.inputs)

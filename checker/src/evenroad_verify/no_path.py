@@ -63,7 +63,9 @@ class Shown:
 
 def read_no_path(data: bytes) -> NoPath:
     """Return the certificate that some bytes are; Refused for any others."""
-    return read_file(data, MAGIC, _no_path)
+    # What is no number is refused below.
+    with np.errstate(invalid="ignore"):
+        return read_file(data, MAGIC, _no_path)
 
 
 def _no_path(said: dict[str, list[str]], body: bytes) -> NoPath:
