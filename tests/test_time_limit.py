@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, off_the_clock, within
+from evenroad import _time_limit
+from evenroad._time_limit import BudgetSpent, Deadline, Pace, look_at_clock, off_the_clock, within
 from evenroad.constraints import KeepUpright
 from evenroad.planning.planners.growing import GrowingPRM
 from evenroad.planning.planners.trees import GridSearch
@@ -198,6 +199,14 @@ def test_a_deadline_within_another_never_ends_later_and_what_is_off_the_clock_do
         with pytest.raises(BudgetSpent):
             look_at_clock(0.1)
     assert Deadline.after(None).left > 1e9
+
+
+def test_fast_batches_grow_but_not_by_a_last_one_of_few_rows(monkeypatch):
+    monkeypatch.setattr(_time_limit, "now", lambda: 0.0)
+    pace = Pace()
+    with within(10.0):
+        assert [len(rows) for rows in _time_limit.in_time(np.arange(9), pace)] == [4, 5]
+        assert [len(rows) for rows in _time_limit.in_time(np.arange(30), pace)] == [8, 16, 6]
 
 
 def test_compiled_loops_end_with_the_time_of_their_thread(caged):

@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from evenroad._time_limit import BudgetSpent
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.planning import Status
 from evenroad.points.samplers import Halton, Sobol
@@ -106,6 +107,26 @@ def test_a_path_that_was_found_before_the_budget_was_spent_is_the_answer():
     assert late.solved
     assert late.cost <= early.cost
     assert late.counts["edges_checked"] <= checks
+
+
+def test_the_best_path_stays_where_the_time_ends_between_two_stages():
+    class Endless(Halton):
+        def draw(self, n, d, *, rng=0):
+            if n > 64:
+                raise BudgetSpent
+            return super().draw(n, d, rng=rng)
+
+    class Longer(KNearest):
+        def edges(self, q, space=None, *, terminals=0):
+            if len(q) > 66:
+                raise BudgetSpent
+            return super().edges(q, space, terminals=terminals)
+
+    for cut in ({"sampler": Endless()}, {"sampler": Halton(), "rule": Longer(10)}):
+        result = plan_growing(ChanceWorld(3, 1.0, 0.7), START, GOAL, first=16, until="budget", **cut)
+        assert result.solved
+        assert [stage.points for stage in result.stages][:3] == [16, 32, 64]
+        assert result.counts["points"] == result.stages[-1].points <= 128
 
 
 def test_the_same_seed_gives_the_same_bits_and_sets_must_extend_one_another():
