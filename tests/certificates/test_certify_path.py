@@ -51,6 +51,15 @@ def test_a_path_that_grazes_is_decided_by_how_near_it_comes(gap, status, tmp_pat
         assert ("1e-07 m" in str(found)) == (status == "undecided")
 
 
+def test_a_slow_approach_is_proved_until_right_before_its_touch(tmp_path):
+    # For 1e-5 of the motion the two are nearer than 1e-7 m before they touch.
+    sphere = er.Sphere(0.2, xyz=(math.cos(0.3), math.sin(0.3), -0.3 + 1e-4), name="ball")
+    touch = certify_path([[-1.0], [1.0]], world_with(sphere, tmp_path)).touch
+    meeting = 0.3 - 2.0 * math.asin(0.5 * math.sqrt(0.3**2 - (0.3 - 1e-4) ** 2))
+    assert touch.share == pytest.approx(0.5 * (meeting + 1.0), abs=1e-6)
+    assert touch.share - 1e-6 <= touch.free_until[1] < 0.5 * (meeting + 1.0)
+
+
 def test_a_touch_behind_a_place_that_is_undecided_is_found(tmp_path):
     (tmp_path / "arm.urdf").write_text(URDF)
     near = er.Sphere(0.2, xyz=(math.cos(0.3), math.sin(0.3), -0.3 - 2e-9), name="near")
