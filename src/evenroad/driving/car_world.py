@@ -25,6 +25,10 @@ from evenroad.world.protocol import Apart
 
 LARGEST_ANGLE = 4.0 * math.pi
 """Largest angle of a start or goal [rad]: a larger one is probably in degrees."""
+SLICES = 144
+"""Number of slices of the angle in a proof that there is no path."""
+_MOST_BOXES = 1_000_000
+"""Largest number of boxes that such a proof goes to: some tenths of a second."""
 _THIRD = 1.0 / 3.0
 """Share of a footprint at either end in which a contact is at a corner or a side."""
 
@@ -168,7 +172,9 @@ class CarWorld(OneOrMany):
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
         """Return the proof that no path leads from a start, (3,), to any goal, (g, 3); None says nothing.
 
-        It is that of the largest disk inside of the footprint: where that cannot get through, the robot cannot.
+        The largest disk inside of the footprint comes first: where that cannot get through, the robot cannot.  Then, if
+        there is time, the angle is divided into slices, and the map into boxes of a cell and a slice: the robot cannot
+        be in those where all poses touch something.
         """
         poses = as_batch("start and goals", np.vstack([start, goals]), 3)
         for centre in self._footprint.inscribed[0]:
@@ -179,7 +185,16 @@ class CarWorld(OneOrMany):
                     f" {self._inscribed.radius:.3g}, cannot get from start to goal either"
                 )
                 return Apart(message, proved=True)
-        return None
+        if quickly or not self.valid(poses[:1])[0]:
+            return None
+        free = poses[1:][self.valid(poses[1:])]
+        if not all(self.vehicle.are_apart(poses[0], goal, SLICES, _MOST_BOXES) for goal in free):
+            return None
+        message = (
+            f"proved: there is no path; in none of {SLICES} slices of the angle, nor from one to the next, does the"
+            " footprint get from start to goal, however it moves"
+        )
+        return Apart(message, proved=True)
 
     @cached_property
     def _inscribed(self) -> DiskWorld:

@@ -28,6 +28,8 @@ from evenroad.roadmap.budget import BEFORE_REASONS
 
 SHORTCUTS, QUICK_SHORTCUTS = 200, 60
 """Numbers of shortcuts that are tried, and of those that are with ``smooth="quick"``."""
+_BEFORE_PROOFS = (1, True), (4, False)
+"""Numbers of rounds of the search before a proof that there is no path, and whether that is a quick one."""
 _SAME = 1e-7
 """Largest distance of the end of a path from its goal: rounding, in cells and radians."""
 
@@ -109,12 +111,13 @@ class CarSearch:
 
 def _searched(attempt: Attempt, queries: Sequence[CarQuery], order: list[int]) -> int | PlanResult:
     """Return which query found a path first, or the result that there is none."""
-    with attempt.watch("search"):
-        for number in order:
-            if queries[number].search(1):
-                return number
-    if (apart := shown_apart(attempt)) is not None:
-        return apart
+    for rounds, quickly in _BEFORE_PROOFS:
+        with attempt.watch("search"):
+            for number in order:
+                if queries[number].search(rounds):
+                    return number
+        if (apart := shown_apart(attempt, quickly=quickly)) is not None:
+            return apart
     with attempt.watch("search"), until(attempt.time.part(attempt.began, BEFORE_REASONS)):
         try:
             while True:

@@ -3,6 +3,7 @@
 
 #include "bind/arrays.hpp"
 #include "drive/car_query.hpp"
+#include "drive/slices.hpp"
 
 namespace evenroad::bind {
 
@@ -16,6 +17,8 @@ constexpr std::size_t MOST_CELLS = 1'000'000'000;
 constexpr double LARGEST_FOOTPRINT = 1e5;
 /// Largest number of poses along a path.
 constexpr double MOST_POSES = 1e7;
+/// Largest number of slices of the angle.
+constexpr std::int64_t MOST_SLICES = 720;
 /// More turns than these are a mistake [rad].
 constexpr double LARGEST_ANGLE = 1e6;
 
@@ -194,6 +197,19 @@ nb::object gaps(const drive::Vehicle& vehicle, nb::handle q) {
   return as_row(std::move(distances));
 }
 
+/// Whether it is proved that no path leads from a free pose to another.
+bool are_apart(const drive::Vehicle& vehicle, nb::handle start, nb::handle goal, std::int64_t slices,
+               std::int64_t most) {
+  const drive::Pose from = vehicle.to_cells(pose_of(start, "start")), to = vehicle.to_cells(pose_of(goal, "goal"));
+  require(slices >= 3 && slices <= MOST_SLICES, "slices must be from 3 to 720");
+  require_budget(most, "most");
+  return without_gil([&] {
+    drive::Checks checks(vehicle);
+    require(checks.is_free(from) && checks.is_free(to), "start and goal must be free");
+    return drive::Slices(vehicle, slices).find(from, to, most) == drive::Apart::PROVED;
+  });
+}
+
 std::optional<drive::Contact> contact(const drive::Vehicle& vehicle, nb::handle q) {
   const drive::Pose pose = vehicle.to_cells(pose_of(q, "q"));
   return without_gil([&] {
@@ -312,6 +328,7 @@ void add_drive(nb::module_& module) {
       .def("curves_free", &curves_free, "steering"_a, "a"_a.none(), "b"_a.none())
       .def("pieces_free", &pieces_free, "steering"_a, "start"_a.none(), "pieces"_a.none())
       .def("gaps", &gaps, "q"_a.none())
+      .def("are_apart", &are_apart, "start"_a.none(), "goal"_a.none(), "slices"_a, "most"_a)
       .def("contact", &contact, "q"_a.none());
   nb::class_<drive::CarQuery>(part, "CarQuery", "A search for the path of a car between two free poses.")
       .def("__init__", &make_query, "vehicle"_a, "steering"_a, "start"_a.none(), "goal"_a.none(), "variant"_a,

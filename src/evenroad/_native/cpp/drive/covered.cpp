@@ -1,22 +1,27 @@
 // Every side of the polygon widens the rows that it crosses: between two sides all columns are covered.
 #include "drive/covered.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace evenroad::drive {
 
 bool Covered::cover(std::span<const Vec> polygon, double grow, const world::Occupancy& occupancy) {
-  Vec low = polygon[0], high = polygon[0];
-  for (const Vec& corner : polygon) {
-    low = {std::min(low.x, corner.x), std::min(low.y, corner.y)};
-    high = {std::max(high.x, corner.x), std::max(high.y, corner.y)};
-  }
   // The ring around the map is occupied, so what reaches beyond it meets something.
-  if (!(low.x - grow > 0.0 && low.y - grow > 0.0 && high.x + grow < static_cast<double>(occupancy.columns()) &&
-        high.y + grow < static_cast<double>(occupancy.rows()))) {
+  const double right = static_cast<double>(occupancy.columns()) - grow;
+  const double bottom = static_cast<double>(occupancy.rows()) - grow;
+  const bool is_inside = std::ranges::all_of(
+      polygon, [&](const Vec& at) { return at.x > grow && at.x < right && at.y > grow && at.y < bottom; });
+  if (is_inside) {
+    cover(polygon, grow);
+  } else {
     first_ = 0, last_ = -1;
-    return false;
   }
+  return is_inside;
+}
+
+void Covered::cover(std::span<const Vec> polygon, double grow) {
+  const auto [low, high] = std::ranges::minmax(polygon, {}, [](const Vec& at) { return at.y; });
   first_ = before(low.y - grow), last_ = column_of(high.y + grow);
   constexpr double FAR = std::numeric_limits<double>::max();
   columns_.assign(last_ - first_ + 1, {FAR, -FAR});
@@ -34,13 +39,12 @@ bool Covered::cover(std::span<const Vec> polygon, double grow, const world::Occu
       columns.high = std::max(columns.high, std::max(enters, leaves) + grow);
     }
   }
-  return true;
 }
 
 bool Covered::meets(const world::Occupancy& occupancy) const {
   for (std::int64_t row = first_; row <= last_; row++) {
-    const Columns& columns = columns_[row - first_];
-    if (occupancy.any(row, before(columns.low), column_of(columns.high))) return true;
+    const auto [first, last] = cells(row);
+    if (occupancy.any(row, first, last)) return true;
   }
   return false;
 }

@@ -18,18 +18,31 @@ struct Columns {
 /// The rows and columns of the last polygon that was covered.
 class Covered {
  public:
+  /// The first and the last column of a row.
+  struct Cells {
+    std::int64_t first, last;
+  };
+
   /// Cover the sum of a convex polygon and a square of half side `grow`; return whether it stays inside of the grid.
   bool cover(std::span<const Vec> polygon, double grow, const world::Occupancy& occupancy);
+  /// Cover a convex polygon, wherever it is.
+  void cover(std::span<const Vec> polygon, double grow);
   /// Say whether a cell of those is occupied.
   bool meets(const world::Occupancy& occupancy) const;
+
+  std::int64_t first_row() const { return first_; }
+  std::int64_t last_row() const { return last_; }
+  Cells cells(std::int64_t row) const {
+    const Columns& columns = columns_[row - first_];
+    return {before(columns.low), column_of(columns.high)};
+  }
 
   /// Call `found(row, column)` for each occupied cell of those until it returns true; return whether it did.
   template <class Found>
   bool any_occupied(const world::Occupancy& occupancy, const Found& found) const {
     for (std::int64_t row = first_; row <= last_; row++) {
-      const Columns& columns = columns_[row - first_];
-      const std::int64_t end = column_of(columns.high);
-      for (std::int64_t column = before(columns.low); column <= end; column++) {
+      const auto [begin, end] = cells(row);
+      for (std::int64_t column = begin; column <= end; column++) {
         const std::int64_t left = occupancy.to_right(row, column, end - column);
         if (left > end - column) break;
         column += left;
