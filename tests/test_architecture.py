@@ -38,7 +38,7 @@ MAY_IMPORT = {
     "roadmap": BASE | {"points", "space", "world"},
     "planning": BASE | {*VALUES, *OF_ARMS, "driving", "constraints", "roadmap"},
     "trajectory": BASE | {"space", "geometry", "world", *OF_ARMS, "constraints"},
-    "certificates": BASE | {*VALUES, *OF_ARMS, "trajectory"},
+    "certificates": BASE | {*VALUES, *OF_ARMS, "constraints", "trajectory"},
     "task": BASE | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory"},
     "datasets": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
     "qmc": BASE | {"points"},
@@ -60,6 +60,7 @@ TYPES = "for type checkers"
 UPWARD = {
     ("collision.arm_world", "ArmWorld.apart"): {"infeasibility.proof"},
     ("planning.result", "PlanResult.certify"): {"certificates.certify", "certificates.no_path"},
+    ("planning.result", TYPES): {"trajectory"},
     ("planning.result", "PlanResult.save"): {"io"},
     ("planning.result", "PlanResult.load"): {"io"},
     ("planning.result", "PlanResult.plot"): {"viz.result"},

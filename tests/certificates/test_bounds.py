@@ -24,7 +24,7 @@ def tree(tmp_path_factory):
     certificate = Certificate("", ("A", "B", "C"), curves, np.zeros(0, np.uint8), np.zeros((0, 3)))
     return (
         claim_of(read_inputs(sources.robot, sources.scene, None, {}), certificate),
-        curves,
+        certificate,
         er.load_robot(sources.robot),
     )
 
@@ -51,12 +51,12 @@ def tasks_of(claim, rng, count):
 
 @pytest.mark.parametrize("by", [BOXES, CORNERS])
 def test_no_gap_exceeds_the_true_one_at_any_time(tree, by):
-    claim, curves, robot = tree
+    claim, certificate, robot = tree
+    curves = certificate.curves
     rng = np.random.default_rng(by)
     tasks, directions = tasks_of(claim, rng, 300), rng.normal(size=(300, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    far, _ = claim.frames.far(curves)
-    gaps = Motions(claim, curves, far).gaps(tasks, np.full(300, by), directions)
+    gaps = Motions(claim, certificate).gaps(tasks, np.full(300, by), directions)
     exact = []
     for task, direction, gap in zip(tasks, directions, gaps, strict=True):
         motion, number, level, _, _, pair = task
@@ -72,14 +72,15 @@ def test_no_gap_exceeds_the_true_one_at_any_time(tree, by):
 
 
 def test_the_error_of_a_gap_is_far_below_what_it_must_exceed(tree):
-    claim, curves, robot = tree
+    claim, certificate, robot = tree
+    curves = certificate.curves
     rng = np.random.default_rng(7)
     tasks, directions = tasks_of(claim, rng, 200), rng.normal(size=(200, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     # In so short an interval the gap is that of one state, less than a picometre or two.
     tasks[:, 1], tasks[:, 2] = rng.integers(0, 2**40, size=200), 40
-    far, out = claim.frames.far(curves)
-    gaps = Motions(claim, curves, far).gaps(tasks, np.full(200, CORNERS), directions)
+    _, out = claim.frames.far(certificate.curves, certificate.tolerance)
+    gaps = Motions(claim, certificate).gaps(tasks, np.full(200, CORNERS), directions)
     errors = []
     for task, direction, gap in zip(tasks, directions, gaps, strict=True):
         time, names = np.array([(task[1] + 0.5) / 2.0**40]), claim.pairs[task[5]].names

@@ -197,7 +197,7 @@ def test_a_task_has_a_certificate_of_each_motion_with_what_is_held_then(tmp_path
     monkeypatch.chdir(tmp_path)
     (tmp_path / "task.yaml").write_text(TASK)
     assert main(["run", "task.yaml", "--certificate", "task.cert"]) == 0
-    assert "task.1.cert to task.5.cert, which evenroad-verify checks" in capsys.readouterr().out
+    assert "task.1.cert to task.5.cert of the trajectory's motions" in capsys.readouterr().out
     said = []
     for number in range(1, 6):
         words = [f"task.{number}.cert", str(box_reach().sources.robot), "-", str(box_reach().sources.srdf)]

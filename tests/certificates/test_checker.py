@@ -1,23 +1,10 @@
 """`evenroad-verify` accepts what is proved, and refuses every file in which a number was changed for the worse."""
 
-import itertools
-
 import numpy as np
 import pytest
 
 from evenroad_verify.command import main
-from tests.certificates.written import CHANGES, accepts, box_reach, joined, parts_of, shelf, with_digest
-from tests.robots.oracle import clearance
-
-CONTACT = 2e-6
-"""How deep bodies may be in contact for the oracle, which is no more exact along its spheres [m]."""
-
-
-def touches(written, waypoints, states=30):
-    """Return whether an oracle that shares nothing with the checker sees a contact on a path."""
-    share = np.linspace(0.0, 1.0, states)[:, np.newaxis]
-    q = np.concatenate([a + share * (b - a) for a, b in itertools.pairwise(waypoints)])
-    return clearance(written.world.robot, written.world.scene, q, samples=25).min() < -CONTACT
+from tests.certificates.written import CHANGES, accepts, box_reach, joined, parts_of, shelf, touches, with_digest
 
 
 @pytest.mark.parametrize("written", [box_reach, shelf])

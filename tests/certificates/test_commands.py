@@ -8,15 +8,13 @@ from evenroad.cli import main
 from evenroad.errors import InvalidValue
 from evenroad_verify.command import main as verify
 from tests.certificates.small import URDF, certificate_in, inputs_of, sources_in
-from tests.certificates.written import accepts, box_reach
-
-PLAN = ["plan", "box-reach", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture"]
+from tests.certificates.written import PLAN, accepts, box_reach
 
 
 def test_a_command_writes_a_certificate_beside_its_plan(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main([*PLAN, "--certificate", "reach.cert", "--clearance", "0.01"]) == 0
-    assert "reach.cert, which evenroad-verify checks" in capsys.readouterr().out
+    assert "reach.cert of the path, which evenroad-verify checks" in capsys.readouterr().out
     files = [str(each) for each in (box_reach().sources.robot, box_reach().sources.scene, box_reach().sources.srdf)]
     assert verify(["reach.cert", *files, "--path", "box-reach.csv"]) == 0
     assert "touch nothing, 0.01 m from all obstacles" in capsys.readouterr().out

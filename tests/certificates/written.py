@@ -1,5 +1,6 @@
 """Certificates of the shipped robots, written once, and the same files with something changed."""
 
+import itertools
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -12,6 +13,11 @@ from evenroad_verify.certificate import MAGIC
 from evenroad_verify.claim import Inputs, read_inputs
 from evenroad_verify.command import verify
 from evenroad_verify.errors import Refused
+from tests.robots.oracle import clearance
+
+PLAN = ["plan", "box-reach", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture"]
+CONTACT = 2e-6
+"""How deep bodies may be in contact for the oracle, which is no more exact along its spheres [m]."""
 
 CHANGES = {
     "grown": ("size: [0.41, 0.01, 0.36], xyz: [0.705, 0.185", "size: [0.41, 0.21, 0.36], xyz: [0.705, 0.185"),
@@ -73,7 +79,8 @@ def parts_of(data):
     points = 8 * (int(said["motions"]) * int(said["degree"]) + 1) * joints
     packed = (int(said["answers"]) + 2) // 3
     waypoints = np.frombuffer(body[:points], "<f8").reshape(-1, joints).copy()
-    directions = np.frombuffer(body[points + packed :], "<f4").reshape(-1, 3).copy()
+    end = points + packed + 12 * int(said["directions"])
+    directions = np.frombuffer(body[points + packed : end], "<f4").reshape(-1, 3).copy()
     return lines, waypoints, bytearray(body[points : points + packed]), directions
 
 
@@ -87,3 +94,10 @@ def with_digest(data, inputs: Inputs):
     """Return a certificate as if it was written for these inputs."""
     head, _, rest = data.partition(b"inputs ")
     return head + b"inputs " + inputs.digest.encode() + rest[64:]
+
+
+def touches(written, waypoints, states=30):
+    """Return whether an oracle that shares nothing with the checker sees a contact on a path."""
+    share = np.linspace(0.0, 1.0, states)[:, np.newaxis]
+    q = np.concatenate([a + share * (b - a) for a, b in itertools.pairwise(waypoints)])
+    return clearance(written.world.robot, written.world.scene, q, samples=25).min() < -CONTACT

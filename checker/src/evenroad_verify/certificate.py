@@ -10,13 +10,55 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from evenroad_verify.errors import BadInput, Floats, demand, number
+from evenroad_verify.errors import BadInput, Floats, demand, number, numbers
+from evenroad_verify.shapes import rotation_of
 
 MAGIC = b"evenroad certificate 1\n"
 MOST_MOTIONS = 1 << 20
 _Read = TypeVar("_Read")
 FARTHEST = 1000.0
 """Largest value of a joint [rad or m]."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An `axis` of a link stays within an angle of a `direction` of the root."""
+
+    link: str
+    within: float
+    axis: Floats
+    direction: Floats
+
+    @property
+    def limit(self) -> float:
+        """Largest distance of the two unit vectors."""
+        return 2.0 * float(np.sin(0.5 * min(self.within, np.pi)))
+
+    def off(self, at: Floats) -> Floats:
+        """Return the distance of unit vectors, (n, 3), from the direction."""
+        return np.asarray(np.linalg.norm(at - self.direction, axis=1))
+
+
+@dataclass(frozen=True)
+class Point:
+    """A `point` of a link stays within a distance of a box, `low` to `high` in a frame that is turned by `xyzw`."""
+
+    link: str
+    within: float
+    point: Floats
+    xyzw: Floats
+    low: Floats
+    high: Floats
+
+    @property
+    def limit(self) -> float:
+        """Largest distance from the box [m]."""
+        return self.within
+
+    def off(self, at: Floats) -> Floats:
+        """Return the distance of places, (n, 3), from the box."""
+        seen = at @ rotation_of(self.xyzw)
+        return np.asarray(np.linalg.norm(np.maximum(np.maximum(self.low - seen, seen - self.high), 0.0), axis=1))
 
 
 @dataclass(frozen=True)
@@ -35,6 +77,10 @@ class Certificate:
     held: dict[str, float] = field(default_factory=dict)
     clearance: float = 0.0
     padding: dict[str, float] = field(default_factory=dict)
+    axes: tuple[Axis, ...] = ()
+    points: tuple[Point, ...] = ()
+    tolerance: float = 0.0
+    """How far the joints may be from the curves."""
     robot: str | None = None
     """Digest of the file of the robot that it carries, None where it carries none; `scene` alike."""
     scene: str | None = None
@@ -63,7 +109,13 @@ def read_file(data: bytes, magic: bytes, read: Callable[[dict[str, list[str]], b
 
 def _certificate(said: dict[str, list[str]], body: bytes) -> Certificate:
     once = ("degree", "motions", "answers", "directions")
-    head = head_of(said, once)
+    head, tolerance = head_of(said, once, ("axis", "point", "tolerance")), said.get("tolerance", ["0"])
+    demand(len(tolerance) == 1, "its header has a line twice")
+    head["axes"] = tuple(Axis(link, float(v[0]), _unit(v[1:4]), _unit(v[4:])) for link, v in _rows(said, "axis", 7))
+    head["points"] = tuple(
+        Point(link, float(v[0]), v[1:4], v[4:8], v[8:11], v[11:]) for link, v in _rows(said, "point", 14)
+    )
+    head["tolerance"] = _length(tolerance[0])
     dim = len(head["joints"])
     degree, motions, answers, directions = (count_of(said[key][0]) for key in once)
     demand(degree in (1, 2) and 0 < motions < MOST_MOTIONS, "it has no path, or too long a one")
@@ -126,6 +178,17 @@ def count_of(text: str) -> int:
 def _length(value: Any) -> float:
     demand(0.0 <= number(value) <= 1.0, f"a clearance must be 0 to 1 m, got {value}")
     return number(value)
+
+
+def _rows(said: dict[str, list[str]], key: str, count: int) -> Iterator[tuple[str, Floats]]:
+    """Yield name and numbers of lines of `count` numbers and a name."""
+    for line in said.get(key, ()):
+        *words, name = line.split(" ", count)
+        yield name, numbers(words, count)
+
+
+def _unit(vector: Floats) -> Floats:
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def _named(lines: list[str]) -> dict[str, float]:

@@ -88,6 +88,8 @@ def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
     frames, nodes = frames_of(robot, certificate), Nodes()
     bodies, place = bodies_of(inputs, frames)
     demand(certificate.padding.keys() <= bodies.keys(), "a link is padded that has no shape")
+    kept = {each.link for each in certificate.axes} | {each.link for each in certificate.points}
+    demand(kept <= frames.place.keys(), "a constraint is about a link that the robot lacks")
     require_limits(frames, scene, certificate)
     around = _around(frames, nodes, bodies, place, scene, certificate)
     whole = {name: nodes.whole(place[name][0], shapes) for name, shapes in bodies.items()}
@@ -134,7 +136,7 @@ def _around(
         node = nodes.whole(frame, [shape for name in names for shape in bodies[name]])
         keep = certificate.clearance + padding
         pairs.append(Pair(node, obstacles[touched], keep, (" and ".join(names), "the obstacles")))
-    _, out = frames.far(certificate.curves)
+    _, out = frames.far(certificate.curves, certificate.tolerance)
     reach = max((out[nodes.frame[node]] + nodes.reach[node] for pair in pairs for node in (pair.first,)), default=0.0)
     planes = [each.above for each in scene.obstacles if each.above is not None]
     demand(reach + max(planes, default=0.0) < GROUND or not planes, "the robot reaches beyond a plane")

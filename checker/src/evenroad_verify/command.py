@@ -15,6 +15,7 @@ from evenroad_verify.claim import Claim, Inputs, claim_of, read_inputs
 from evenroad_verify.errors import BadInput, Refused, demand
 from evenroad_verify.no_path import MAGIC as OF_NO_PATH
 from evenroad_verify.no_path import Shown, read_no_path, verify_no_path
+from evenroad_verify.paths import require_same_path
 from evenroad_verify.proof import prove
 from evenroad_verify.solids import require_outside
 
@@ -51,7 +52,7 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("srdf", type=_file, nargs="?", help="the robot's SRDF, if the certificate was written with one")
     parser.add_argument("--write", type=Path, metavar="FOLDER", help="write the files that the certificate carries")
     parser.add_argument("--package", action="append", default=[], help="NAME=FOLDER of a ROS package with meshes")
-    parser.add_argument("--path", type=Path, help="a CSV of waypoints, which must be those of the certificate")
+    parser.add_argument("--path", type=Path, help="a CSV of waypoints, or of a trajectory, that must be what is proved")
     asked = parser.parse_args(words)
     packages = {name: Path(folder) for name, _, folder in (each.partition("=") for each in asked.package)}
     try:
@@ -65,7 +66,7 @@ def main(words: Sequence[str] | None = None) -> int:
         lines = _lines(verify(data, inputs)) if is_of_path else _lines_of_no_path(verify_no_path(data, inputs))
         if asked.path is not None:
             demand(is_of_path, "it proves that there is no path")
-            _require_same_path(carrier, asked.path)
+            require_same_path(carrier, asked.path)
     except Refused as error:
         print(f"REFUSED: {error}")
         return REFUSED
@@ -78,18 +79,6 @@ def main(words: Sequence[str] | None = None) -> int:
 
 def _file(word: str) -> Path | None:
     return None if word == "-" else Path(word)
-
-
-def _require_same_path(certificate: Certificate, path: Path) -> None:
-    """Raise Refused unless the waypoints of a CSV, whose first row names the joints, are those of the certificate."""
-    rows = [line.split(",") for line in path.read_text("utf-8").split()]
-    demand(rows and tuple(rows[0]) == certificate.joints, f"{path} has other joints than the certificate")
-    points = np.concatenate([certificate.curves[:, 0], certificate.curves[-1:, 2]])
-    try:
-        same = np.array(rows[1:], float)
-    except ValueError as error:
-        raise BadInput(f"{path}: {error}") from None
-    demand(same.shape == points.shape and (same == points).all(), f"{path} has other waypoints than the certificate")
 
 
 def _lines_of_no_path(shown: Shown) -> list[str]:
@@ -124,6 +113,12 @@ def _lines(proved: Proved) -> list[str]:
     for name, first, last in zip(read.joints, read.curves[0, 0], read.curves[-1, 2], strict=True):
         lines.append(f"  {name}: from {first:.6g} to {last:.6g}")
     lines.append(f"  smallest gap of a step of the proof: {proved.least:.3g} m")
+    lines += [f"  an axis of {kept.link} stays within {kept.within:g} rad of its direction" for kept in read.axes]
+    lines += [
+        f"  a point of {kept.link} stays within {kept.within:g} m of its line, plane or box" for kept in read.points
+    ]
+    if read.tolerance:
+        lines.append(f"  every joint may be {read.tolerance:g} off the curves")
     lines.append(f"pairs proved apart ({len(claim.pairs)}):")
     lines += [f"  {first} - {second}" for first, second in (pair.names for pair in claim.pairs)]
     lines.append("not claimed:")

@@ -43,9 +43,10 @@ class Frames:
             table[k + 1, k] = True
         return table
 
-    def far(self, curves: Floats) -> tuple[Floats, Floats]:
+    def far(self, curves: Floats, tolerance: float = 0.0) -> tuple[Floats, Floats]:
         """Return how far frames are from their joints, (frames, joints), and from the root, (frames,), at most [m]."""
-        most = np.abs(self.factor * curves[:, :, self.column] + self.offset).max((0, 1)) * self.slides
+        values = self.factor * curves[:, :, self.column] + self.offset
+        most = (np.abs(values).max((0, 1)) + np.abs(self.factor) * tolerance) * self.slides
         far, out = np.zeros((len(self.joints) + 1, len(self.joints))), np.zeros(len(self.joints) + 1)
         for k, parent in enumerate(self.parent):
             step = float(np.linalg.norm(self.origin[k][1])) + most[k]

@@ -32,10 +32,10 @@ class Nodes:
     def _add(self, frame: int, parts: list[Part]) -> int:
         low, high, reach = np.full(3, np.inf), np.full(3, -np.inf), 0.0
         for shape, rows in parts:
-            points = np.ascontiguousarray(_points(shape, rows).T)
+            spans = shape.spans[3:].take(rows, axis=1)
             wide = shape.radius + shape.disc * np.sqrt(np.maximum(0.0, 1.0 - shape.axis**2))
-            low, high = np.minimum(low, points.min(1) - wide), np.maximum(high, points.max(1) + wide)
-            reach = max(reach, float(np.linalg.norm(points, axis=0).max()) + shape.radius + shape.disc)
+            low, high = np.minimum(low, spans[:3].min(1) - wide), np.maximum(high, spans[3:6].max(1) + wide)
+            reach = max(reach, float(spans[6].max()) + shape.radius + shape.disc)
         centre, box = 0.5 * (low + high), 0.5 * (high - low)[:, None] * np.eye(3)
         if len(parts) == 1 and parts[0][0].is_box:
             corner, radius = parts[0][0].points, parts[0][0].radius
@@ -52,13 +52,15 @@ class Nodes:
     def halves(self, node: int) -> tuple[int, int]:
         """Return the numbers of a node's two halves; Refused where it is a single element."""
         if node not in self._halves:
-            middles = np.concatenate([shape.points[shape.corners[rows]].mean(1) for shape, rows in self.parts[node]])
-            demand(len(middles) > 1, "a single element is halved")
+            middles = np.concatenate([shape.spans[:3].take(rows, axis=1) for shape, rows in self.parts[node]], axis=1)
+            count = middles.shape[1] // 2
+            demand(count > 0, "a single element is halved")
             # Rounded to 2^-20 m: programs that differ in a last bit choose one axis, and order the elements alike.
-            rounded = np.rint(2.0**20 * np.ascontiguousarray(middles.T))
+            rounded = np.rint(2.0**20 * middles)
             along = rounded[np.ptp(rounded, axis=1).argmax()]
-            is_first = np.zeros(len(along), bool)
-            is_first[np.argsort(along, kind="stable")[: len(along) // 2]] = True
+            between = np.partition(along, count - 1)[count - 1]
+            is_first = along < between
+            is_first[np.flatnonzero(along == between)[: count - int(is_first.sum())]] = True
             sides: tuple[list[Part], list[Part]] = ([], [])
             start = 0
             for shape, rows in self.parts[node]:
@@ -87,6 +89,9 @@ class Nodes:
 
 def _points(shape: Shape, rows: Ints) -> Floats:
     """Return the points that some elements have for corners, (m, 3)."""
+    corners = shape.corners[rows]
+    if 8 * corners.size < len(shape.points):
+        return shape.points[np.unique(corners)]
     used = np.zeros(len(shape.points), bool)
-    used[shape.corners[rows]] = True
+    used[corners] = True
     return shape.points[used]

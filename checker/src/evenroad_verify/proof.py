@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from evenroad_verify.certificate import Certificate
+from evenroad_verify.certificate import Axis, Certificate, Point
 from evenroad_verify.claim import Claim
-from evenroad_verify.errors import Bools, Floats, Ints, demand
+from evenroad_verify.errors import Answers, Bools, Floats, Ints, demand
 from evenroad_verify.nodes import Nodes
 
 HALVE_TIME, HALVE_FIRST, HALVE_SECOND, CENTRES, BOXES, CORNERS = range(6)
@@ -23,16 +23,21 @@ _AT_ONCE = 1 << 14
 
 def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, Ints]:
     """Return the least gap of all answers [m] and the answered tasks; Refused where a task is not proved."""
-    tasks, answers = expand(claim, certificate)
+    pairs = np.array([(pair.first, pair.second) for pair in claim.pairs], np.int64).reshape(-1, 2)
+    tasks, answers, left = expand(claim.nodes, _first(certificate, pairs), certificate.answers)
+    keeps: list[Axis | Point] = [*certificate.axes, *certificate.points]
+    kept, how, left = expand(claim.nodes, _first(certificate, np.zeros((len(keeps), 2), np.int64)), left)
+    demand(not len(left), "there are answers without a task")
+    demand((how == CENTRES).all(), "an answer to a constraint is a direction")
     given = np.cumsum(answers > CENTRES) - 1
     demand(int((answers > CENTRES).sum()) == len(certificate.directions), "directions are missing or left over")
-    far, out = claim.frames.far(certificate.curves)
+    _, out = claim.frames.far(certificate.curves, certificate.tolerance)
     reach = (np.array(claim.nodes.reach) + out[np.array(claim.nodes.frame)])[tasks[:, FIRST : SECOND + 1]]
     largest = 1.0 + np.abs(certificate.curves).max() * max(1.0, float(np.abs(claim.frames.factor).max()))
     demand(ROUNDING * depth * reach.max(initial=0.0) * largest < LEAST, "the robot is too large for double precision")
     directions = np.concatenate([certificate.directions, np.zeros((1, 3))])  # of those without one any will do
     keep, least = np.array([pair.keep for pair in claim.pairs]), np.inf
-    motions = Motions(claim, certificate.curves, far)
+    motions = Motions(claim, certificate)
     for start in range(0, len(tasks), _AT_ONCE):
         some = slice(start, start + _AT_ONCE)
         gap = motions.gaps(tasks[some], answers[some], directions[given[some]]) - keep[tasks[some, PAIR]]
@@ -41,27 +46,28 @@ def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, In
             first, second = claim.pairs[tasks[start + worst, PAIR]].names
             demand(False, f"motion {tasks[start + worst, MOTION]}: {first} and {second} are not proved apart")
         least = min(least, float(gap[worst]))
+    for number, each in enumerate(keeps):
+        excess = motions.excess(kept[kept[:, PAIR] == number], each)
+        demand((excess <= LEAST).all(), f"{each.link} is not proved to keep its constraint")
     return least, tasks
 
 
-def expand(claim: Claim, certificate: Certificate) -> tuple[Ints, Ints]:
-    """Return the tasks that are answered by a direction, one row each, and these answers."""
-    pairs = np.array([(pair.first, pair.second) for pair in claim.pairs], np.int64).reshape(-1, 2)
-    demand(len(certificate.curves) * len(pairs) <= len(certificate.answers), "a task has no answer")
+def _first(certificate: Certificate, pairs: Ints) -> Ints:
+    """Return the first tasks: each pair for each motion, over the whole motion."""
     motion, pair = np.divmod(np.arange(len(certificate.curves) * len(pairs)), max(1, len(pairs)))
-    zero = np.zeros_like(motion)
-    tasks = np.stack([motion, zero, zero, *pairs[pair].T, pair], axis=1)
-    taken, proved, how = 0, [tasks[:0]], [motion[:0]]
+    return np.stack([motion, 0 * motion, 0 * motion, *pairs[pair].T, pair], axis=1)
+
+
+def expand(nodes: Nodes, tasks: Ints, answers: Answers) -> tuple[Ints, Ints, Answers]:
+    """Return the tasks that are answered by a direction, one row each, these answers, and the answers left over."""
+    proved, how = [tasks[:0]], [tasks[:0, 0]]
     while len(tasks):
-        demand(taken + len(tasks) <= len(certificate.answers), "a task has no answer")
-        answer = certificate.answers[taken : taken + len(tasks)].astype(np.int64)
-        taken += len(tasks)
+        demand(len(tasks) <= len(answers), "a task has no answer")
+        answer, answers = answers[: len(tasks)].astype(np.int64), answers[len(tasks) :]
         proved.append(tasks[answer >= CENTRES])
         how.append(answer[answer >= CENTRES])
-        halved = answer < CENTRES
-        tasks = _halved(claim.nodes, tasks[halved], answer[halved])
-    demand(taken == len(certificate.answers), "there are answers without a task")
-    return np.concatenate(proved), np.concatenate(how)
+        tasks = _halved(nodes, tasks[answer < CENTRES], answer[answer < CENTRES])
+    return np.concatenate(proved), np.concatenate(how), answers
 
 
 def _halved(nodes: Nodes, tasks: Ints, answer: Ints) -> Ints:
@@ -83,16 +89,18 @@ def _halved(nodes: Nodes, tasks: Ints, answer: Ints) -> Ints:
 class Motions:
     """How nodes move along the curves of a certificate."""
 
-    def __init__(self, claim: Claim, curves: Floats, far: Floats) -> None:
-        self._frames, self._nodes, self._curves, self._far = claim.frames, claim.nodes, curves, far
+    def __init__(self, claim: Claim, certificate: Certificate) -> None:
+        self._frames, self._nodes, self._curves = claim.frames, claim.nodes, certificate.curves
+        self._far, _ = claim.frames.far(certificate.curves, certificate.tolerance)
+        self._off = certificate.tolerance * np.abs(claim.frames.factor)
         self._slides, self._carries = claim.frames.slides, claim.frames.carries
 
     def gaps(self, tasks: Ints, answers: Ints, given: Floats) -> Floats:
         """Return by how much the directions of tasks separate their nodes throughout their stretches [m]."""
-        nodes, half = self._nodes, 0.5 ** (tasks[:, LEVEL] + 1.0)
+        nodes, half = self._nodes, np.asarray(0.5 ** (tasks[:, LEVEL] + 1.0))
         key, at = np.unique(_middles(tasks), return_inverse=True)
         rate, bend, rotation, origin, turning, along = self._middle_states(key)
-        fastest, bend = np.abs(rate)[at] + half[:, None] * bend[at], bend[at]
+        rate, bend = rate[at], bend[at]
         tables = nodes.frame, nodes.centre, nodes.box, nodes.reach
         frame, centre, box, reach = (np.array(table)[tasks[:, FIRST : SECOND + 1]] for table in tables)
         turns, origins = rotation[at[:, None], frame], origin[at[:, None], frame]
@@ -104,7 +112,7 @@ class Motions:
         ends, stray, by_corners = np.zeros((2, len(tasks))), np.zeros(len(tasks)), np.flatnonzero(answers == CORNERS)
         for s, sign in enumerate((1.0, -1.0)):
             moves = self._carries[frame[:, s]] & ~self._carries[frame[:, 1 - s]]
-            stray += self._stray(moves, fastest, bend, self._far[frame[:, s]] + reach[:, s, None])
+            stray += self._stray(half, moves, rate, bend, self._far[frame[:, s]] + reach[:, s, None])
             spin, shift = (np.einsum("nk,nkc->nc", moves, each[at]) for each in (turning, along))
             for e, time in enumerate((half, -half)):
                 f = sign * (direction + time[:, None] * np.cross(direction, spin))
@@ -114,7 +122,26 @@ class Motions:
                 self._reach_by_corners(tasks[:, FIRST + s], by_corners, local, far)
                 ends[e] += far + np.einsum("nc,nc->n", f, origins[:, s])
                 ends[e] += sign * time * np.einsum("nc,nc->n", direction, shift)
-        return np.asarray(-ends.max(0) - 0.5 * half**2 * stray)
+        return np.asarray(-ends.max(0) - stray)
+
+    def excess(self, tasks: Ints, kept: Axis | Point) -> Floats:
+        """Return by how much a constraint may be exceeded during the stretches of tasks [m, or of a unit vector]."""
+        half = np.asarray(0.5 ** (tasks[:, LEVEL, None] + 1.0))
+        rate, bend, rotation, origin, turning, along = self._middle_states(_middles(tasks))
+        frame, (turn, shift) = self._frames.place[kept.link]
+        moves = self._carries[frame]
+        if isinstance(kept, Axis):
+            moves, lever = moves & ~self._slides, np.ones(len(moves))
+            at = rotation[:, frame] @ (turn @ kept.axis)
+            velocity = np.cross((moves[:, None] * turning).sum(1), at)
+        else:
+            point = turn @ kept.point + shift
+            lever = self._far[frame] + np.linalg.norm(point)
+            at = rotation[:, frame] @ point + origin[:, frame]
+            velocity = np.cross((moves[:, None] * turning).sum(1), at) + (moves[:, None] * along).sum(1)
+        # The distance is convex: along a straight way it is largest at an end.
+        worst = np.maximum(kept.off(at + half * velocity), kept.off(at - half * velocity))
+        return np.asarray(worst + self._stray(half[:, 0], moves, rate, bend, lever) - kept.limit)
 
     def _middle_states(self, key: Ints) -> tuple[Floats, ...]:
         """Return rates and bends of joints, poses of frames, and how joints turn and shift the root's frame."""
@@ -128,11 +155,13 @@ class Motions:
         along = np.where(self._slides[:, None], rate[:, :, None] * axes, np.cross(origin[:, 1:], turning))
         return rate, bend, rotation, origin, turning, along
 
-    def _stray(self, moves: Bools, fastest: Floats, bend: Floats, lever: Floats) -> Floats:
-        """Return a bound of the acceleration of a node's points, (n,)."""
+    def _stray(self, half: Floats, moves: Bools, rate: Floats, bend: Floats, lever: Floats) -> Floats:
+        """Return how far points stray at most from where their velocities take them, (n,)."""
+        fastest = np.abs(rate) + half[:, None] * bend
         turns = moves * fastest * ~self._slides
         before = np.cumsum(turns, axis=1) - turns
-        return np.asarray((moves * np.where(self._slides, 1.0, lever) * (fastest * (2 * before + turns) + bend)).sum(1))
+        each = 0.5 * half[:, None] ** 2 * (fastest * (2 * before + turns) + bend) + self._off
+        return np.asarray((moves * np.where(self._slides, 1.0, lever) * each).sum(1))
 
     def _reach_by_corners(self, node: Ints, rows: Ints, local: Floats, far: Floats) -> None:
         """Write how far nodes reach by their corners, in the rows that are answered so."""

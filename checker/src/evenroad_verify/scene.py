@@ -6,12 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from evenroad_verify.errors import Pose, number, numbers, require
 from evenroad_verify.files import Files
 from evenroad_verify.meshes import read_mesh
-from evenroad_verify.shapes import DIMENSIONS, Shape, balls, hull, pose_of, primitive
+from evenroad_verify.shapes import DIMENSIONS, Shape, balls, hull, pose_of, primitive, rotation_of
 from evenroad_verify.yaml_subset import parse_yaml
 
 GROUND = 100.0
@@ -137,9 +135,4 @@ def _pose(entry: dict[str, object]) -> Pose:
     require(not {"rpy", "xyzw"} <= entry.keys(), "an obstacle has two rotations")
     if "xyzw" not in entry:
         return pose_of(xyz, numbers(entry.get("rpy", ["0"] * 3), 3))
-    quaternion = numbers(entry["xyzw"], 4)
-    length = float(np.linalg.norm(quaternion))
-    require(length > 1e-9, "a quaternion is zero")
-    x, y, z, w = quaternion / length
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + 2 * w * cross + 2 * cross @ cross, xyz
+    return rotation_of(numbers(entry["xyzw"], 4)), xyz

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,14 @@ class Shape:
     def __post_init__(self) -> None:
         require(len(self.corners) and np.abs(self.points).max() < WIDEST, f"a shape is empty or beyond {WIDEST:g} m")
 
+    @cached_property
+    def spans(self) -> Floats:
+        """Of each element the mean, the least and the largest of its corners, and the largest distance, (10, n)."""
+        corners = np.ascontiguousarray(self.corners.T)
+        places = np.ascontiguousarray(self.points.T).take(corners, axis=1)
+        far = np.linalg.norm(self.points, axis=1).take(corners).max(0)
+        return np.concatenate([places.mean(1), places.min(1), places.max(1), far[None]])
+
     def at(self, pose: Pose) -> Shape:
         """Return the shape moved by a pose."""
         rotation, shift = pose
@@ -56,6 +65,15 @@ def pose_of(xyz: Floats, rpy: Floats) -> Pose:
     """Return a pose whose rotation is Rz(yaw) Ry(pitch) Rx(roll)."""
     x, y, z = (rotation_about(axis, rpy[i : i + 1])[0] for i, axis in enumerate(np.eye(3)))
     return z @ y @ x, xyz
+
+
+def rotation_of(xyzw: Floats) -> Floats:
+    """Return the rotation of a quaternion of any length."""
+    length = float(np.linalg.norm(xyzw))
+    require(length > 1e-9, "a quaternion is zero")
+    x, y, z, w = xyzw / length
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.asarray(np.eye(3) + 2 * w * cross + 2 * cross @ cross)
 
 
 def times(first: Pose, second: Pose) -> Pose:

@@ -6,7 +6,8 @@ import numpy as np
 
 from evenroad_verify.certificate import Certificate
 from evenroad_verify.claim import Claim
-from evenroad_verify.errors import Bools, Floats, Ints, demand
+from evenroad_verify.errors import Bools, Floats, Ints, Pose, demand
+from evenroad_verify.nodes import Nodes
 from evenroad_verify.proof import FIRST, PAIR, SECOND
 from evenroad_verify.shapes import Shape
 
@@ -29,24 +30,46 @@ def require_outside(claim: Claim, certificate: Certificate, tasks: Ints) -> int:
     rotation, origin, _ = claim.frames.at(certificate.curves[:1, 0])
     pieces, opened = dict[int, list[tuple[Floats, bool]]](), set()
     for number in sorted(set(range(len(claim.pairs))) - apart):
-        pair = claim.pairs[number]
-        for inner, outer in ((pair.first, pair.second), (pair.second, pair.first)):
-            frame, other = claim.nodes.frame[inner], claim.nodes.frame[outer]
-            solids = [solid for shape, _ in claim.nodes.parts[outer] for solid in pieces_of(shape, pieces)]
+        both, names = (claim.pairs[number].first, claim.pairs[number].second), claim.pairs[number].names
+        if _boxes_apart(claim.nodes, both, rotation[0], origin[0]):
+            continue
+        for inner, outer in (both, both[::-1]):
+            surfaces = [shape for shape, _ in claim.nodes.parts[outer] if shape.surface]
+            if not surfaces:
+                continue
+            turn, shift = _seen_from(claim.nodes, inner, outer, rotation[0], origin[0])
+            points = np.concatenate([_points(shape, pieces) for shape, _ in claim.nodes.parts[inner]])
+            points = points @ turn.T + shift
+            near = np.abs(points - claim.nodes.centre[outer]) <= np.abs(claim.nodes.box[outer]).sum(0)
+            points = points[near.all(axis=1)]
+            solids = [solid for shape in surfaces for solid in pieces_of(shape, pieces)] if len(points) else []
             opened |= {id(triangles) for triangles, closed in solids if not closed}
-            points = np.array(
-                [solid[0, 0] for shape, _ in claim.nodes.parts[inner] for solid in _points(shape, pieces)]
-            )
-            points = points @ rotation[0, frame].T + origin[0, frame]
-            points = (points - origin[0, other]) @ rotation[0, other]
             inside = any(_inside(points, triangles) for triangles, closed in solids if closed)
-            demand(not inside, f"{pair.names[0]} and {pair.names[1]} are one inside of the other")
+            demand(not inside, f"{names[0]} and {names[1]} are one inside of the other")
     return len(opened)
 
 
-def _points(shape: Shape, pieces: dict[int, list[tuple[Floats, bool]]]) -> list[Floats]:
-    """Return corners of which the first one is a point of each connected piece of a shape."""
-    return [piece for piece, _ in pieces_of(shape, pieces)] if shape.surface else [shape.points[shape.corners]]
+def _seen_from(nodes: Nodes, inner: int, outer: int, rotation: Floats, origin: Floats) -> Pose:
+    """Return the pose of a node's frame in that of another one."""
+    frame, other = nodes.frame[inner], nodes.frame[outer]
+    return rotation[other].T @ rotation[frame], rotation[other].T @ (origin[frame] - origin[other])
+
+
+def _boxes_apart(nodes: Nodes, both: tuple[int, int], rotation: Floats, origin: Floats) -> bool:
+    """Return whether the boxes of two nodes are apart along an axis of a frame: then nothing is nested."""
+    for inner, outer in (both, both[::-1]):
+        turn, shift = _seen_from(nodes, inner, outer, rotation, origin)
+        far = np.abs(turn @ nodes.centre[inner] + shift - nodes.centre[outer])
+        if (far > np.abs(turn @ nodes.box[inner].T).sum(1) + np.abs(nodes.box[outer]).sum(0)).any():
+            return True
+    return False
+
+
+def _points(shape: Shape, pieces: dict[int, list[tuple[Floats, bool]]]) -> Floats:
+    """Return a point of each connected piece of a surface, of other shapes of each element, (n, 3)."""
+    if not shape.surface:
+        return np.asarray(shape.points[shape.corners[:, 0]])
+    return np.array([piece[0, 0] for piece, _ in pieces_of(shape, pieces)])
 
 
 def pieces_of(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list[tuple[Floats, bool]]:

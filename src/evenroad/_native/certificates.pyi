@@ -9,6 +9,9 @@ class ShapeTables:
 class JointTables:
     def __init__(self, links: Ints, poses: Floats, rules: Floats) -> None: ...
 
+class Paths:
+    def __init__(self, curves: Floats, tolerance: float, frames: Ints, limits: Floats, numbers: Floats) -> None: ...
+
 class Touch:
     motion: int
     share: float
@@ -28,6 +31,6 @@ def write_answers(
     shapes: Ints,
     pairs: Ints,
     keeps: Floats,
-    curves: Floats,
+    paths: Paths,
     most: int,
 ) -> Answers | None: ...

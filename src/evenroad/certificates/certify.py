@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,15 +16,21 @@ from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad._native.certificates import Answers
 from evenroad.certificates.claim import Claim, Claimed, claim_of
+from evenroad.certificates.curves import TOLERANCES, Curves, driven, straight
 from evenroad.certificates.elements import tables_of
+from evenroad.certificates.kept import claimed_keeps, rows_of
 from evenroad.certificates.plain import claimed_scene
 from evenroad.certificates.sources import Files, robot_files, scene_files
 from evenroad.certificates.sources import Sources as Sources
 from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.constrained_world import KeptWorld
+from evenroad.constraints.differential_drive import DrivenWorld
+from evenroad.constraints.keep import Keep
 from evenroad.errors import Exhausted, InvalidValue, shown
 from evenroad.loading.description import RobotDescription
 from evenroad.robots.kinematics import held_values
 from evenroad.scenes.scene import Scene
+from evenroad.space.path import continued
 
 MAGIC = "evenroad certificate 1\n"
 MOST_TASKS = 4_000_000
@@ -31,21 +39,32 @@ DECIDED = 1e-7
 PathLike = str | os.PathLike[str]
 
 
-def certify(world: object, path: Floats, sources: Sources, file: PathLike) -> None:
+def certify(world: object, path: Floats, sources: Sources, file: PathLike, *, states: Floats | None = None) -> None:
     """Write the certificate of a path, (p, dim), that a world of these files calls free.
 
-    Raises NotAvailable for a robot, or a scene, of which no certificate speaks; InvalidValue if the path touches
-    something, or comes too near to it; Exhausted if the proof would be too long.
+    With `states`, (n, dim), it is about the straight motions between these, which a trajectory along the path drives.
+
+    Raises NotAvailable for what no certificate speaks of; InvalidValue if the path touches something, or comes too near
+    to it; Exhausted if the proof would be too long.
     """
+    keeps: Sequence[Keep] = ()
+    if isinstance(world, KeptWorld) and not isinstance(world, DrivenWorld):
+        keeps, world = world.keeps, world.world
     if not isinstance(world, ArmWorld):
         raise InvalidValue(f"a certificate is about a path of an arm in a scene, not in {shown(world)}")
-    claimed = claimed_by(sources, world)
+    claimed = claimed_by(sources, world, keeps)
     claim = claim_of(claimed.urdf, claimed.scene, claimed.beside)
-    curves = np.stack([path[:-1], 0.5 * (path[:-1] + path[1:]), path[1:]], axis=1)
-    answers, directions = answers_of(claim, curves)
-    counts = ["degree 1", f"motions {len(curves)}", f"answers {len(answers)}", f"directions {len(directions)}"]
-    tables = path.astype("<f8").tobytes() + packed(answers) + directions.astype("<f4").tobytes()
-    claimed.write(Path(file), MAGIC, counts, tables)
+    if states is None:
+        curves = straight(continued(path, world.space, path[0]))
+        answers, directions = answers_of(claim, curves)
+    else:
+        curves, answers, directions = _near(claim, states)
+    lines = [keep.line for keep in claimed.beside.keeps]
+    lines += [f"tolerance {curves.tolerance!r}"] if curves.tolerance else []
+    lines += [f"degree {curves.degree}", f"motions {len(curves.controls)}"]
+    lines += [f"answers {len(answers)}", f"directions {len(directions)}"]
+    tables = curves.points.astype("<f8").tobytes() + packed(answers) + directions.astype("<f4").tobytes()
+    claimed.write(Path(file), MAGIC, lines, tables)
 
 
 @dataclass(frozen=True)
@@ -57,8 +76,8 @@ class OfFiles:
     scene: Scene
     beside: Claimed
 
-    def write(self, file: Path, magic: str, counts: list[str], tables: bytes) -> None:
-        """Write a certificate: a header that ends with some counts, tables, and the files that it carries."""
+    def write(self, file: Path, magic: str, more: list[str], tables: bytes) -> None:
+        """Write a certificate: a header with some lines more, tables, and the files that it carries."""
         digest, beside = hashlib.sha256(), self.beside
         for content in (each for files in self.files for each in files.contents):
             digest.update(hashlib.sha256(content).digest())
@@ -70,11 +89,11 @@ class OfFiles:
         lines += [f"padding {value!r} {link}" for link, value in beside.padding.items() if value]
         carried = [each for files in self.files if files.carried for each in files.contents]
         with atomic_write(file) as stream:
-            stream.write((magic + "\n".join([*lines, *counts]) + "\n\n").encode() + tables)
+            stream.write((magic + "\n".join([*lines, *more]) + "\n\n").encode() + tables)
             stream.write(b"".join(len(each).to_bytes(8, "little") + each for each in carried))
 
 
-def claimed_by(sources: Sources, world: ArmWorld) -> OfFiles:
+def claimed_by(sources: Sources, world: ArmWorld, keeps: Sequence[Keep] = ()) -> OfFiles:
     """Return what a certificate of a world is about."""
     robot, urdf = robot_files(sources, world)
     claims = claimed_scene(world)
@@ -86,25 +105,40 @@ def claimed_by(sources: Sources, world: ArmWorld) -> OfFiles:
         convex=scene.convex,
         clearance=world.clearance,
         padding=dict(world.robot.padding),
+        keeps=claimed_keeps(keeps, world.robot),
     )
     return OfFiles((robot, scene), urdf, claims, claimed)
 
 
-def answers_of(claim: Claim, curves: Floats) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
-    """Return the answers of a certificate and their directions, (d, 3), for curves of three control points."""
+def _near(claim: Claim, states: Floats) -> tuple[Curves, npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
+    """Return curves along states, and their answers: nearer ones where the first are too far to be proved free."""
+    *others, finest = TOLERANCES
+    for tolerance in others:
+        curves = driven(states, tolerance)
+        with suppress(InvalidValue):
+            return curves, *answers_of(claim, curves)
+    curves = driven(states, finest)
+    return curves, *answers_of(claim, curves)
+
+
+def answers_of(claim: Claim, curves: Curves) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
+    """Return the answers of a certificate and their directions, (d, 3)."""
     written = written_of(claim, curves, MOST_TASKS)
     if written is None:
         raise Exhausted(f"the certificate would have more than {MOST_TASKS} answers")
     touch = written.touch
     if touch.pair >= 0:
+        where = f"no certificate: motion {touch.motion} at share {touch.share:.6f}"
+        if touch.pair >= len(claim.pairs):
+            raise InvalidValue(f"{where}: {claim.keeps[touch.pair - len(claim.pairs)].link} leaves its constraint")
         first, second = claim.pairs[touch.pair][3]
         what = "touches" if touch.gap < DECIDED else "is not shown to be apart from"
-        raise InvalidValue(f"no certificate: motion {touch.motion} at share {touch.share:.6f}: {first} {what} {second}")
+        raise InvalidValue(f"{where}: {first} {what} {second}")
     return written.answers, written.directions
 
 
-def written_of(claim: Claim, curves: Floats, most: int) -> Answers | None:
-    """Return what the kernel writes for curves of three control points, None if it takes more than `most` answers."""
+def written_of(claim: Claim, curves: Curves, most: int) -> Answers | None:
+    """Return what the kernel writes for curves, None if it takes more than `most` answers."""
     # Imported late: nothing else needs it.
     from evenroad._native import certificates as native
 
@@ -112,6 +146,7 @@ def written_of(claim: Claim, curves: Floats, most: int) -> Answers | None:
     stops = np.cumsum([len(node.shapes) for node in claim.nodes], dtype=np.int64)
     rows = [(node.frame, end - len(node.shapes), end) for node, end in zip(claim.nodes, stops, strict=True)]
     both = np.array([pair[:2] for pair in claim.pairs], dtype=np.int64).reshape(-1, 2)
+    frames, limits, numbers = rows_of(claim.keeps, claim.tree.placement)
     return native.write_answers(
         tables_of(claim.shapes),
         claim.tree.tables(),
@@ -119,7 +154,7 @@ def written_of(claim: Claim, curves: Floats, most: int) -> Answers | None:
         members,
         both,
         np.array([keep for _, _, keep, _ in claim.pairs], dtype=float),
-        np.ascontiguousarray(curves, dtype=float),
+        native.Paths(curves.controls, curves.tolerance, frames, limits, numbers),
         most,
     )
 

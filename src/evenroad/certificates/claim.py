@@ -9,6 +9,7 @@ import numpy as np
 
 from evenroad._native.certificates import JointTables
 from evenroad.certificates.elements import Elements, elements_of
+from evenroad.certificates.kept import Axis, Point
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.loading.description import RobotDescription
@@ -32,6 +33,7 @@ class Claimed:
     convex: frozenset[str]
     clearance: float
     padding: Mapping[str, float]
+    keeps: tuple[Axis | Point, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,7 @@ class Claim:
     shapes: tuple[Elements, ...]
     nodes: tuple[Node, ...]
     pairs: tuple[tuple[int, int, float, tuple[str, str]], ...]
+    keeps: tuple[Axis | Point, ...] = ()
 
 
 def tree_of(urdf: RobotTree, claimed: Claimed) -> Tree:
@@ -121,7 +124,7 @@ def claim_of(urdf: RobotDescription, scene: Scene, claimed: Claimed) -> Claim:
         for j in range(i + 1, len(names)):
             if placement[name][0] != placement[names[j]][0] and frozenset((name, names[j])) not in touching:
                 pairs.append((first + i, first + j, 0.0, (name, names[j])))
-    return Claim(tree, tuple(shapes), tuple(nodes), tuple(pairs))
+    return Claim(tree, tuple(shapes), tuple(nodes), tuple(pairs), claimed.keeps)
 
 
 def _around(

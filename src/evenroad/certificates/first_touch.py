@@ -16,6 +16,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.certificates.certify import DECIDED, written_of
 from evenroad.certificates.claim import Claim
+from evenroad.certificates.curves import straight
 from evenroad.certificates.world_claim import WorldClaim
 
 IN_CONTACT = 1e-9
@@ -73,7 +74,7 @@ def _first_near(pairs: Claim, path: Floats, begin: float) -> float | None:
 
 def _near_between(pairs: Claim, path: Floats, stops: Floats, cuts: int) -> float | None:
     """Return the same of straight motions between stops; one of too many answers is cut in two, `cuts` times."""
-    written = written_of(pairs, _straight(states_at(path, stops)), _MOST)
+    written = written_of(pairs, straight(states_at(path, stops)), _MOST)
     if written is not None:
         touch = written.touch
         if touch.pair < 0:
@@ -127,7 +128,7 @@ def _proved_until(pairs: Claim, path: Floats, begin: float, contact: float) -> f
 
 def in_contact(pairs: Claim, q: Floats, within: float = IN_CONTACT) -> tuple[str, str] | None:
     """Return the names of two bodies that have points nearer than `within` [m] in a configuration, (dim,)."""
-    written = written_of(pairs, np.repeat(q[np.newaxis, np.newaxis], 3, axis=1), _MOST)
+    written = written_of(pairs, straight(np.stack([q, q])), _MOST)
     if written is None or written.touch.pair < 0 or not written.touch.most <= within:
         return None
     return pairs.pairs[written.touch.pair][3]
@@ -149,8 +150,3 @@ def states_at(path: Floats, stops: Floats) -> Floats:
     # Both ends are met to the bit.
     found: Floats = (1.0 - share) * path[motion] + share * path[np.minimum(motion + 1, len(path) - 1)]
     return found
-
-
-def _straight(path: Floats) -> Floats:
-    """Return the control points of straight motions, (m, 3, dim)."""
-    return np.stack([path[:-1], 0.5 * (path[:-1] + path[1:]), path[1:]], axis=1)

@@ -23,6 +23,7 @@ from evenroad._rng import generator
 from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, until
 from evenroad.certificates.certify import written_of
 from evenroad.certificates.claim import Claimed, Tree, tree_of
+from evenroad.certificates.curves import straight
 from evenroad.certificates.first_touch import IN_CONTACT, first_touch, in_contact, states_at
 from evenroad.certificates.world_claim import Body, Owner, WorldClaim, bodies_of, nested
 from evenroad.geometry.hulls import piece_of
@@ -207,8 +208,7 @@ class _Search:
         self.lines += 1
         line = np.stack([middle, middle])
         line[:, self.swept] += (-half[self.swept], half[self.swept])
-        curve = np.stack([line[0], middle, line[1]])[np.newaxis]
-        written = written_of(self.claim.one_by_one(self.claim.pairs, spare), curve, _MOST)
+        written = written_of(self.claim.one_by_one(self.claim.pairs, spare), straight(line), _MOST)
         if written is None:
             return "too long"
         touch = written.touch

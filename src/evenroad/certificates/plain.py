@@ -41,7 +41,7 @@ def plain_scene(scene: Scene) -> tuple[bytes, ...]:
     files: list[bytes] = []
     lines = ["obstacles:"] if len(scene.obstacles) else ["obstacles: {}"]
     for each in scene.obstacles:
-        kept = f", clearance: {each.clearance!r}" if each.clearance else ""
+        kept = f", clearance: {_number(each.clearance)}" if each.clearance else ""
         lines.append(f"  {_quoted(each.name)}: {{{_entry(each.body, files)}{kept}}}")
     allowed: dict[str, list[str]] = {}
     for body, obstacle in sorted(scene.allowed):
@@ -49,7 +49,7 @@ def plain_scene(scene: Scene) -> tuple[bytes, ...]:
     lines += ["allowed:"] if allowed else []
     lines += [f"  {_quoted(name)}: {_list(map(_quoted, bodies))}" for name, bodies in allowed.items()]
     lines += ["limits:"] if scene.limits else []
-    lines += [f"  {_quoted(joint)}: {_list(map(repr, both))}" for joint, both in scene.limits.items()]
+    lines += [f"  {_quoted(joint)}: {_list(map(_number, both))}" for joint, both in scene.limits.items()]
     lines += ["attach:"] if scene.attached else []
     for held in scene.attached:
         on = f"link: {_quoted(held.link)}, touches: {_list(map(_quoted, held.touches))}"
@@ -115,15 +115,15 @@ def _angles(turn: Floats) -> tuple[float, float, float]:
 def _entry(body: Shape, files: list[bytes]) -> str:
     """Return what a scene says of a body; the file that it needs is added to `files`."""
     body = along_z(body) if isinstance(body, Capsule) else body
-    pose = f"xyz: {_list(map(repr, body.pose.xyz))}, xyzw: {_list(map(repr, body.pose.xyzw))}"
+    pose = f"xyz: {_list(map(_number, body.pose.xyz))}, xyzw: {_list(map(_number, body.pose.xyzw))}"
     if isinstance(body, PointCloud):
         files.append("".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in body.points.tolist()).encode())
-        return f"shape: cloud, file: {len(files)}.xyz, radius: {body.radius!r}, {pose}"
+        return f"shape: cloud, file: {len(files)}.xyz, radius: {_number(body.radius)}, {pose}"
     if isinstance(body, Mesh):
         files.append(_mesh(body.triangles))
         return f"shape: mesh, file: {len(files)}.obj, {pose}"
     sizes = zip(PRIMITIVES[body.kind].dimensions, _rows(body), strict=True)
-    said = [f"{key}: {_list(map(repr, row)) if count > 1 else repr(row[0])}" for (key, count), row in sizes]
+    said = [f"{key}: {_list(map(_number, row)) if count > 1 else _number(row[0])}" for (key, count), row in sizes]
     return f"shape: {body.kind}, {', '.join(said)}, {pose}"
 
 
@@ -160,6 +160,12 @@ def _held(robot: Robot, name: str) -> HeldObject:
     else:
         body = Mesh(convex_hull(np.concatenate([each.corners.reshape(-1, 3) for each in parts]), name))
     return HeldObject(name, replace(body, pose=joint.origin @ body.pose), joint.parent, touches)
+
+
+def _number(value: float) -> str:
+    """Return a number as YAML 1.1 reads it: with a point before an exponent."""
+    text = repr(float(value))
+    return text.replace("e", ".0e") if "e" in text and "." not in text else text
 
 
 def _quoted(text: str) -> str:

@@ -7,6 +7,7 @@ from functools import reduce
 from operator import and_
 from pathlib import Path
 
+from evenroad._arrays import Floats
 from evenroad._time_limit import within
 from evenroad.cli import interrupted
 from evenroad.cli.outputs import require_certifiable
@@ -86,9 +87,9 @@ def plan_arm(plan: PlanArm) -> int:
         "meshes": None if meshes is None else asdict(meshes),
     }
     source = {"plan": {name: record[name] for name in ("query", "made_of")}}
-    more_rows, record["trajectory"] = trajectory_rows(plan, problem, result, constraints, make, source)
+    more_rows, record["trajectory"], trajectory = trajectory_rows(plan, problem, result, constraints, make, source)
     rows = [*_rows(problem), *([] if meshes is None else [("second check", str(meshes))]), *more_rows]
-    rows += _certified(plan, result)
+    rows += _certified(plan, result, None if trajectory is None else trajectory.positions)
 
     def draw(file: Path) -> None:
         from evenroad.viz.arm import save_arm_picture
@@ -99,8 +100,8 @@ def plan_arm(plan: PlanArm) -> int:
     return interrupted() if stopped else code
 
 
-def _certified(plan: PlanArm, result: PlanResult) -> list[tuple[str, str]]:
-    """Write the certificate of a path, or that there is none, if it is wanted; return its row for the table."""
+def _certified(plan: PlanArm, result: PlanResult, states: Floats | None) -> list[tuple[str, str]]:
+    """Write the certificate of a path, or of a trajectory's states, or that there is no path; return its row."""
     apart = result.message.startswith(PROVED)
     if plan.certificate is None or not (result.solved or apart):
         return []
@@ -110,14 +111,15 @@ def _certified(plan: PlanArm, result: PlanResult) -> list[tuple[str, str]]:
 
     sources = plan.sources(plan.robot, plan.world, plan.embed)
     if result.path is not None:
-        certify(result.world, result.path, sources, plan.certificate)
+        certify(result.world, result.path, sources, plan.certificate, states=states)
     else:
         try:
             certify_no_path(result.world, result.start, result.goals, sources, plan.certificate, result.poses)
         except NotAvailable as reason:
             # A proof may use more than a certificate: the answer of the plan stands.
             return [("certificate", str(reason))]
-    return [("certificate", f"{plan.certificate}, which evenroad-verify checks")]
+    of = " of the trajectory" if states is not None else " of the path" if result.solved else ""
+    return [("certificate", f"{plan.certificate}{of}, which evenroad-verify checks")]
 
 
 def _options(plan: PlanArm, problem: Problem, result: PlanResult) -> dict[str, object]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from evenroad._checks import require_positive
 from evenroad._files import Json
@@ -81,25 +81,26 @@ class RunTask(RobotOptions):
                 ("trajectory", f"{trajectory.duration:.3f} s, {len(trajectory.times)} states, {trajectory.proof}")
             )
             rows += [("files", ", ".join(map(str, self.out)))] if self.out else []
-            rows += self._certified(done)
+            rows += self._certified(world, done)
         print_table(rows)
         return 0 if done.solved else 1
 
-    def _certified(self, done: TaskResult) -> list[tuple[str, str]]:
+    def _certified(self, world: ArmWorld, done: TaskResult) -> list[tuple[str, str]]:
         """Write the certificates of a task, if they are wanted; return their row for the table."""
         if self.certificate is None:
             return []
         # Imported late: most tasks are run without them.
         from evenroad.certificates.certify import certify
+        from evenroad.task.result import timed_parts
 
-        sources = self.sources(self._robot(), None, self.embed)
-        moving = [part for part in done.parts if part.cost and part.path is not None]
-        files = [self.certificate.with_suffix(f".{n + 1}{self.certificate.suffix}") for n in range(len(moving))]
-        for part, file in zip(moving, files, strict=True):
+        sources, file = self.sources(self._robot(), None, self.embed), self.certificate
+        parts = timed_parts(done, self._timing(world))
+        files = [file.with_suffix(f".{number}{file.suffix}") for number in range(1, len(parts) + 1)]
+        for (part, trajectory), each in zip(parts, files, strict=True):
             assert part.path is not None, "only of a motion that was found"
-            certify(part.world, part.path, sources, file)
-        named = f"{files[0]} to {files[-1]}" if len(files) > 1 else "".join(map(str, files))
-        return [("certificates", f"{named or 'none: the arm stays where it is'}, which evenroad-verify checks")]
+            certify(part.world, part.path, sources, each, states=trajectory.positions)
+        named = f"{files[0]} to {files[-1]}" if len(files) > 1 else str(files[0])
+        return [("certificates", f"{named} of the trajectory's motions, which evenroad-verify checks")]
 
     def planned(self) -> tuple[ArmWorld, TaskResult]:
         """Return the world and the plan of the task: the same for the same options."""
@@ -121,9 +122,13 @@ class RunTask(RobotOptions):
 
     def timed(self, world: ArmWorld, done: TaskResult) -> Trajectory:
         """Return the trajectory of a task that is solved."""
+        return done.trajectory(**self._timing(world))
+
+    def _timing(self, world: ArmWorld) -> dict[str, Any]:
+        """Return the options of trajectories."""
         from evenroad.trajectory import limits_of
 
-        return done.trajectory(speed=self.speed, limits=limits_of(world.robot, self.limits))
+        return {"speed": self.speed, "limits": limits_of(world.robot, self.limits)}
 
     def _record(self) -> dict[str, object]:
         """Return the options as plain values, of which `run_task_of` makes them again."""

@@ -123,17 +123,17 @@ def trajectory_rows(
     constraints: Constraint | None,
     make: Callable[..., Trajectory] | None,
     source: Mapping[str, object],
-) -> tuple[list[tuple[str, str]], dict[str, object] | None]:
-    """Write the trajectory of a solved plan, with its `source`; return rows for the table, and its record.
+) -> tuple[list[tuple[str, str]], dict[str, object] | None, Trajectory | None]:
+    """Write the trajectory of a solved plan, with its `source`; return rows for the table, its record, and itself.
 
     `make` makes it in place of :func:`evenroad.trajectory.arm_trajectory`, from the options.
     """
     if not (plan.trajectory or plan.timed):
-        return [], None
+        return [], None, None
     stays = result.path is not None and bool(np.all(result.path == result.path[0]))
     if not result.solved or result.path is None or stays:
         _remove_earlier(plan)
-        return [("trajectory", "none: the start is the goal")] if stays else [], None
+        return [("trajectory", "none: the start is the goal")] if stays else [], None, None
     from evenroad.trajectory.formats import save_trajectories, trajectory_record
 
     try:
@@ -153,7 +153,7 @@ def trajectory_rows(
         "states": trajectory_record(trajectory, order),
     }
     files = [("", ", ".join(map(str, plan.trajectory)))] if plan.trajectory else []
-    return [("trajectory", _about(trajectory)), *files], record
+    return [("trajectory", _about(trajectory)), *files], record, trajectory
 
 
 def _options(plan: PlanArm, problem: Problem, constraints: Constraint | None) -> dict[str, Any]:

@@ -25,6 +25,8 @@ from evenroad.world import BoundsLengths, MeasuresPaths, NamesNearest, World
 if TYPE_CHECKING:
     from PIL.Image import Image
 
+    from evenroad.trajectory import Trajectory
+
 _File: TypeAlias = str | os.PathLike[str]
 NO_POINTS = Origin(family="none", method="no points")
 """Origin of a result whose planner draws no points."""
@@ -432,20 +434,19 @@ class PlanResult:
         robot: _File,
         scene: _File | None = None,
         srdf: _File | None = None,
+        trajectory: Trajectory | None = None,
         embed: bool = False,
         **packages: _File,
     ) -> None:
-        """Write a certificate: a proof that the path is free, or that there is none.
-
-        ``evenroad-verify`` checks it without evenroad.
+        """Write a proof that the path is free, or that there is none, which ``evenroad-verify`` checks by itself.
 
         Parameters
         ----------
         file, robot, scene, srdf : str or path-like
             The file to write; the robot's file, the scene's file and the SRDF of the plan's world, or names of shipped
             ones.  Without a scene, or where a checker does not read its format, the certificate carries it.
-        embed : bool
-            Whether it carries the files of the robot, too, and so needs no other file.
+        trajectory, embed : Trajectory, bool
+            A trajectory along this path, to be proved in its place; whether the robot's files are carried, too.
         **packages : path-like
             Folders of ROS packages with meshes, by their names, beside those that are found.
 
@@ -456,8 +457,7 @@ class PlanResult:
 
         Examples
         --------
-        >>> import tempfile
-        >>> import evenroad as er
+        >>> import evenroad as er, tempfile
         >>> result = er.plan(er.ArmWorld("ur5", "box-reach"), "home", "inside")
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     result.certify(f"{folder}/reach.cert", robot="ur5", scene="box-reach")
@@ -471,7 +471,7 @@ class PlanResult:
             certify_no_path(self.world, self.start, self.goals, sources, file, self.poses)
             return
         path, world = self._required("certified")
-        certify(world, path, sources, file)
+        certify(world, path, sources, file, states=None if trajectory is None else trajectory.positions)
 
     def _required(self, how: str) -> tuple[Floats, World]:
         """Return path and world, or raise InvalidValue that names the missing one."""

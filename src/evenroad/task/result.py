@@ -117,22 +117,25 @@ class TaskResult:
         """
         if not self.solved:
             raise InvalidValue(f"there is no trajectory: {self.message}")
-        parts: list[Trajectory] = []
+        timed = timed_parts(self, options)
         pauses: list[float] = []
-        pause, motions = 0.0, iter(self.motions)
+        pause, parts = 0.0, iter(self.motions)
         for step in self.steps:
             if isinstance(step, Wait):
                 pause += step.seconds
-            if not isinstance(step, Move):
-                continue
-            motion = next(motions)
-            # A motion to the current configuration takes no time.
-            for part in (part for part in motion.parts if part.cost):
-                parts.append(part.trajectory(**_kept(motion, part, options)))
-                pauses, pause = [*pauses, pause], 0.0
-        if not parts and self.parts:
-            parts, pauses = [self.parts[0].trajectory(**_kept(self.motions[0], self.parts[0], options))], [0.0]
-        return _joined(parts, [*pauses, pause])
+            elif isinstance(step, Move):
+                moving = [part for part in next(parts).parts if part.cost]
+                pauses += [pause, *[0.0] * (len(moving) - 1)] if moving else []
+                pause = 0.0 if moving else pause
+        return _joined([each for _, each in timed], [*pauses, pause] if pauses else [0.0, pause])
+
+
+def timed_parts(done: TaskResult, options: dict[str, Any]) -> list[tuple[PlanResult, Trajectory]]:
+    """Return the plans of a task that is solved and in which something moves, each with its trajectory."""
+    # A motion to where the arm is takes no time.
+    every = [(motion, part) for motion in done.motions for part in motion.parts]
+    moving = [each for each in every if each[1].cost] or every[:1]
+    return [(part, part.trajectory(**_kept(motion, part, options))) for motion, part in moving]
 
 
 def _kept(motion: Motion, part: PlanResult, options: dict[str, Any]) -> dict[str, Any]:

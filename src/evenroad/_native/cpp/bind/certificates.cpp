@@ -88,14 +88,43 @@ struct Answers {
   Touch touch;
 };
 
+/// Curves of three control points, (n, 3, joints), how far joints are from them, and constraints that these keep.
+///
+/// Of an axis `numbers` have the axis, the direction and zeros; of a point itself, zeros, the rows of the box's
+/// directions, and its low and high ends.
+struct Paths {
+  Paths(nb::handle curves, double tolerance, nb::handle frames, nb::handle limits, nb::handle numbers)
+      : curves(curves, "curves"), tolerance(tolerance) {
+    this->curves.of_shape({this->curves.shape(0), 3, this->curves.shape(2)});
+    require(this->curves.shape(0) < (std::size_t{1} << 20) && joints() > 0, "curves must be fewer than 2^20");
+    const Array<const std::int64_t, 2> rows(frames, "frames");
+    const Floats limit(limits, "limits");
+    const FloatRows values(numbers, "numbers");
+    rows.of_shape({limit.size(), 2}), values.of_shape({limit.size(), 21});
+    for (std::size_t i = 0; i < limit.size(); i++) {
+      const auto row = values.matrix()[i];
+      const auto vector = [&](std::size_t at) { return Vector{row[at], row[at + 1], row[at + 2]}; };
+      const KeptKind kind = rows.matrix()(i, 1) == 0 ? KeptKind::AXIS : KeptKind::POINT;
+      kept.push_back({kind, rows.matrix()(i, 0), limit.span()[i], vector(0), vector(3),
+                      Turn{vector(6), vector(9), vector(12)}, vector(15), vector(18)});
+    }
+  }
+
+  std::size_t joints() const { return curves.shape(2); }
+
+  Array<const double, 3> curves;
+  double tolerance;
+  std::vector<Kept> kept;
+};
+
 std::optional<Answers> write_answers(const ShapeTables& tables, const JointTables& moving, nb::handle nodes,
-                                     nb::handle shapes, nb::handle pairs, nb::handle keeps, nb::handle curves,
+                                     nb::handle shapes, nb::handle pairs, nb::handle keeps, const Paths& paths,
                                      std::int64_t most) {
-  const Array<const double, 3> points(curves, "curves");
-  points.of_shape({points.shape(0), 3, points.shape(2)});
-  require(points.shape(0) < (std::size_t{1} << 20) && points.shape(2) > 0, "curves must be fewer than 2^20");
   require_below(most, std::size_t{1} << 24, "most");
-  require_below(std::span(moving.column), points.shape(2), "columns");
+  require_below(std::span(moving.column), paths.joints(), "columns");
+  for (const Kept& each : paths.kept) {
+    require(each.frame >= 0 && static_cast<std::size_t>(each.frame) <= moving.parent.size(), "frames must exist");
+  }
   const Array<const std::int64_t, 2> rows(nodes, "nodes"), both(pairs, "pairs");
   const Numbers members(shapes, "shapes");
   const Floats keep(keeps, "keeps");
@@ -115,8 +144,8 @@ std::optional<Answers> write_answers(const ShapeTables& tables, const JointTable
   Written written;
   try {
     written = without_gil([&] {
-      Motions motions(moving.frames(), {points.span(), points.shape(2)});
-      return write(all, motions, points.shape(0), every, static_cast<std::size_t>(most));
+      Motions motions(moving.frames(), {paths.curves.span(), paths.joints()}, paths.tolerance);
+      return write(all, motions, paths.curves.shape(0), every, paths.kept, static_cast<std::size_t>(most));
     });
   } catch (const TooLong&) {
     return std::nullopt;
@@ -133,6 +162,9 @@ void add_certificates(nb::module_& module) {
            "sizes"_a.none(), "numbers"_a.none());
   nb::class_<JointTables>(part, "JointTables")
       .def(nb::init<nb::handle, nb::handle, nb::handle>(), "links"_a.none(), "poses"_a.none(), "rules"_a.none());
+  nb::class_<Paths>(part, "Paths")
+      .def(nb::init<nb::handle, double, nb::handle, nb::handle, nb::handle>(), "curves"_a.none(), "tolerance"_a,
+           "frames"_a.none(), "limits"_a.none(), "numbers"_a.none());
   nb::class_<Touch>(part, "Touch")
       .def_ro("motion", &Touch::motion)
       .def_ro("share", &Touch::share)
@@ -144,7 +176,7 @@ void add_certificates(nb::module_& module) {
       .def_ro("directions", &Answers::directions)
       .def_ro("touch", &Answers::touch);
   part.def("write_answers", &write_answers, "shape_tables"_a, "joint_tables"_a, "nodes"_a.none(), "shapes"_a.none(),
-           "pairs"_a.none(), "keeps"_a.none(), "curves"_a.none(), "most"_a);
+           "pairs"_a.none(), "keeps"_a.none(), "paths"_a, "most"_a);
 }
 
 }  // namespace evenroad::bind

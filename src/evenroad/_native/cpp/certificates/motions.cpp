@@ -45,7 +45,8 @@ Vector as_seen(const Moving& moving, const Vector& functional) {
   return turn[0] * functional[0] + turn[1] * functional[1] + turn[2] * functional[2];
 }
 
-Motions::Motions(const Frames& frames, const Curves& curves) : frames_(frames), curves_(curves), chains_(1) {
+Motions::Motions(const Frames& frames, const Curves& curves, double tolerance)
+    : frames_(frames), curves_(curves), tolerance_(tolerance), chains_(1) {
   for (std::size_t k = 0; k < frames.count(); k++) {
     chains_.push_back(chains_[static_cast<std::size_t>(frames.parent[k])]);
     chains_.back().push_back(k);
@@ -56,7 +57,7 @@ Motions::Motions(const Frames& frames, const Curves& curves) : frames_(frames), 
         most = std::max(most, std::abs(frames.factor[k] * q + frames.offset[k]));
       }
     }
-    slide_.push_back(frames.slides[k] != 0 ? most : 0.0);
+    slide_.push_back(frames.slides[k] != 0 ? most + std::abs(frames.factor[k]) * tolerance : 0.0);
   }
 }
 
@@ -92,38 +93,52 @@ const Motions::State& Motions::state(const Task& task) {
   return state;
 }
 
+Carried Motions::carried(const State& at, double half, std::int64_t frame, std::size_t shared, double reach) const {
+  const auto& chain = chains_[static_cast<std::size_t>(frame)];
+  Carried carried;
+  carried.half = half;
+  Moving& moving = carried.moving;
+  moving.turn = at.turn[static_cast<std::size_t>(frame)], moving.origin = at.origin[static_cast<std::size_t>(frame)];
+  // From the last joint back: how far the node is from each one.
+  double lever = reach;
+  std::vector<double> levers(chain.size());
+  for (std::size_t i = chain.size(); i-- > shared;) {
+    lever += slide_[chain[i]];
+    levers[i] = lever;
+    lever += std::sqrt(squared_length(row_of(frames_.shift, chain[i])));
+  }
+  for (std::size_t i = shared; i < chain.size(); i++) {
+    const std::size_t k = chain[i];
+    const bool slides = frames_.slides[k] != 0;
+    const double fastest = std::abs(at.rate[k]) + half * at.bend[k], off = std::abs(frames_.factor[k]) * tolerance_;
+    const double turns = slides ? 0.0 : fastest, arm = slides ? 1.0 : levers[i];
+    carried.stray += arm * (fastest * (2.0 * carried.turning + turns) + at.bend[k]);
+    carried.loose += arm * off;
+    if (!slides) carried.turning += turns, carried.bending += at.bend[k], carried.twisted += off;
+    moving.spin = moving.spin + at.turning[k], moving.drift = moving.drift + at.along[k];
+  }
+  return carried;
+}
+
+Carried Motions::carried(const Task& task, std::int64_t frame, double reach) {
+  return carried(state(task), task.half(), frame, 0, reach);
+}
+
 Moved Motions::moved(const Nodes& nodes, const Task& task) {
   const State& at = state(task);
   Moved moved;
   moved.half = task.half();
   const std::int64_t both[2] = {task.first, task.second};
+  const auto &chain = chains_[static_cast<std::size_t>(nodes[both[0]].frame)],
+             &other = chains_[static_cast<std::size_t>(nodes[both[1]].frame)];
+  std::size_t shared = 0;
+  while (shared < chain.size() && shared < other.size() && chain[shared] == other[shared]) shared++;
   for (int side = 0; side < 2; side++) {
-    Moving& moving = moved.nodes[side];
-    const Node &node = nodes[both[side]], &other = nodes[both[1 - side]];
-    const auto &chain = chains_[static_cast<std::size_t>(node.frame)],
-               &its = chains_[static_cast<std::size_t>(other.frame)];
-    moving.node = both[side];
-    moving.turn = at.turn[static_cast<std::size_t>(node.frame)],
-    moving.origin = at.origin[static_cast<std::size_t>(node.frame)];
-    std::size_t shared = 0;
-    while (shared < chain.size() && shared < its.size() && chain[shared] == its[shared]) shared++;
-    // From the last joint back: how far the node is from each one.
-    double lever = node.reach, below = 0.0;
-    std::vector<double> levers(chain.size());
-    for (std::size_t i = chain.size(); i-- > shared;) {
-      const std::size_t k = chain[i];
-      lever += slide_[k];
-      levers[i] = lever;
-      lever += std::sqrt(squared_length(row_of(frames_.shift, k)));
-    }
-    for (std::size_t i = shared; i < chain.size(); i++) {
-      const std::size_t k = chain[i];
-      const bool slides = frames_.slides[k] != 0;
-      const double fastest = std::abs(at.rate[k]) + moved.half * at.bend[k], turns = slides ? 0.0 : fastest;
-      moved.stray += (slides ? 1.0 : levers[i]) * (fastest * (2.0 * below + turns) + at.bend[k]);
-      below += turns;
-      moving.spin = moving.spin + at.turning[k], moving.drift = moving.drift + at.along[k];
-    }
+    const Node& node = nodes[both[side]];
+    const Carried one = carried(at, moved.half, node.frame, shared, node.reach);
+    moved.nodes[side] = one.moving;
+    moved.nodes[side].node = both[side];
+    moved.stray += one.stray, moved.loose += one.loose;
   }
   return moved;
 }
@@ -141,7 +156,7 @@ double gap(const Nodes& nodes, const Moved& moved, const Vector& direction, By b
       extremes[end] += dot(functional, moving.origin) + sign * time * dot(direction, moving.drift);
     }
   }
-  return -std::max(extremes[0], extremes[1]) - 0.5 * moved.half * moved.half * moved.stray;
+  return -std::max(extremes[0], extremes[1]) - moved.strayed();
 }
 
 }  // namespace evenroad::certificates

@@ -47,10 +47,19 @@ struct Moving {
   Vector origin{}, spin{}, drift{};
 };
 
-/// What is known of a task: its two nodes, half of its length, and how far they stray from their first order.
+/// What is known of a task: its two nodes, half of its length, a bound of their acceleration, and how far they are from
+/// the curve at most.
 struct Moved {
   Moving nodes[2];
-  double half = 0.0, stray = 0.0;
+  double half = 0.0, stray = 0.0, loose = 0.0;
+  /// How far the nodes are at most from where their velocity takes them.
+  double strayed() const { return 0.5 * half * half * stray + loose; }
+};
+
+/// How a frame moves against the root: its directions turn by at most the sum of rates, plus that of their changes.
+struct Carried {
+  Moving moving;
+  double half = 0.0, stray = 0.0, loose = 0.0, turning = 0.0, bending = 0.0, twisted = 0.0;
 };
 
 /// Return a place of a node's frame in the root's frame.
@@ -64,9 +73,13 @@ Vector as_seen(const Moving& moving, const Vector& functional);
 
 class Motions {
  public:
-  Motions(const Frames& frames, const Curves& curves);
+  /// Joints are as far as `tolerance` from the curves.
+  Motions(const Frames& frames, const Curves& curves, double tolerance);
 
   Moved moved(const Nodes& nodes, const Task& task);
+
+  /// Return the same of a frame and what is as far as `reach` from its origin, against the root.
+  Carried carried(const Task& task, std::int64_t frame, double reach);
 
  private:
   struct State {
@@ -76,9 +89,11 @@ class Motions {
   };
 
   const State& state(const Task& task);
+  Carried carried(const State& at, double half, std::int64_t frame, std::size_t shared, double reach) const;
 
   Frames frames_;
   Curves curves_;
+  double tolerance_;
   std::vector<std::vector<std::size_t>> chains_;  // joints above each frame, from the root
   std::vector<double> slide_;                     // how far each joint slides at most
   std::unordered_map<std::uint64_t, State> states_;

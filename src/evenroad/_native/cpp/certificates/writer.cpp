@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "certificates/kept.hpp"
 #include "certificates/separate.hpp"
 #include "common/time_limit.hpp"
 
@@ -38,7 +39,7 @@ class Writer {
   Answer answer(const Task& task) {
     const Moved moved = motions_.moved(nodes_, task);
     const double keep = pairs_[static_cast<std::size_t>(task.pair)].keep;
-    const double enough = keep + LEAST + SPARE, strayed = 0.5 * moved.half * moved.half * moved.stray;
+    const double enough = keep + LEAST + SPARE, strayed = moved.strayed();
     const Vector between = middle_of(nodes_, moved.nodes[1]) - middle_of(nodes_, moved.nodes[0]);
     const double distance = length(between);
     if (distance > 1e-3 && gap(nodes_, moved, between * (1.0 / distance), By::BOXES) > enough) return BY_CENTRES;
@@ -51,8 +52,7 @@ class Writer {
     }
     if (many) return first.corners > MANY ? HALVE_FIRST : HALVE_SECOND;
     const Separation at_middle = separate(nodes_, moved, between, by, When::MIDDLE, 1e9);
-    const double still = at_middle.gap - keep;
-    const double travel = still - (best.gap - keep);
+    const double still = at_middle.gap - keep - moved.loose, travel = at_middle.gap - best.gap;
     const bool both = first.elements == 1 && second.elements == 1;
     const Answer halve = first.elements == 1                ? HALVE_SECOND
                          : second.elements == 1             ? HALVE_FIRST
@@ -113,7 +113,8 @@ class Writer {
 
 }  // namespace
 
-Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<const Pair> pairs, std::size_t most) {
+Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<const Pair> pairs,
+              std::span<const Kept> kept, std::size_t most) {
   Writer writer(nodes, motions, pairs);
   ClockWatch clock(64);
   std::vector<Task> tasks;
@@ -132,7 +133,29 @@ Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<cons
     writer.written.answers.push_back(answer);
     if (answer <= HALVE_SECOND) writer.push_halves(tasks, task, answer);
   }
-  return std::move(writer.written);
+  Written& written = writer.written;
+  if (written.touch.pair >= 0) return std::move(written);
+  tasks.clear();
+  for (std::size_t motion = 0; motion < curves; motion++) {
+    for (std::size_t k = 0; k < kept.size(); k++) {
+      tasks.push_back({static_cast<std::int64_t>(motion), 0, 0, 0, 0, static_cast<std::int64_t>(k)});
+    }
+  }
+  for (std::size_t next = 0; next < tasks.size(); next++) {
+    clock.look();
+    if (tasks.size() > most) throw TooLong();
+    const Task task = tasks[next];
+    const Keeping found = keeping(motions, kept[static_cast<std::size_t>(task.pair)], task);
+    written.answers.push_back(found == Keeping::KEPT ? BY_CENTRES : HALVE_TIME);
+    if (found == Keeping::KEPT) continue;
+    if (found == Keeping::LEFT || task.level >= DEEPEST) {
+      const auto number = static_cast<std::int64_t>(pairs.size()) + task.pair;
+      written.touch = {task.motion, number, task.middle() - static_cast<double>(task.motion), 0.0};
+      break;
+    }
+    writer.push_halves(tasks, task, HALVE_TIME);
+  }
+  return std::move(written);
 }
 
 }  // namespace evenroad::certificates

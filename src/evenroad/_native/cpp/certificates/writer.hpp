@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "certificates/kept.hpp"
 #include "certificates/motions.hpp"
 
 namespace evenroad::certificates {
@@ -15,7 +16,7 @@ struct Pair {
   double keep = 0.0;
 };
 
-/// The first place of the path at which a pair is not proved apart.
+/// The first place of the path at which a pair is not proved apart; after the pairs, at which a constraint is not kept.
 struct Touch {
   std::int64_t motion = 0, pair = -1;
   double share = 0.0;  // of the motion
@@ -30,8 +31,9 @@ struct Written {
   Touch touch;
 };
 
-/// Write the answers to at most `most` tasks; TooLong where there are more.
-Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<const Pair> pairs, std::size_t most);
+/// Write the answers to at most `most` tasks of pairs, and of constraints; TooLong where there are more.
+Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<const Pair> pairs,
+              std::span<const Kept> kept, std::size_t most);
 
 struct TooLong {};
 

@@ -1,0 +1,70 @@
+"""The table of a path or a trajectory, which must be what a certificate is about."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from evenroad_verify.certificate import Certificate
+from evenroad_verify.errors import BadInput, Floats, demand, require
+
+_UNIT = " [rad or m]"
+_FINE = 64
+"""Parts into which a curve is divided to find what is near it."""
+
+
+def require_same_path(certificate: Certificate, path: Path) -> None:
+    """Raise Refused unless the rows of a CSV are the certificate's waypoints or, of curves, near these in their order.
+
+    Of curves the straight ways between rows are near, too.  Columns of joints that stand still must say where.
+    """
+    lines = [line.split(",") for line in path.read_text("utf-8").splitlines() if line]
+    require(lines and all(len(line) == len(lines[0]) for line in lines), f"{path} is no table")
+    columns = {
+        name.removesuffix(_UNIT): i for i, name in enumerate(lines[0]) if "/s" not in name and name != "time [s]"
+    }
+    demand(set(certificate.joints) <= columns.keys(), f"{path} has other joints than the certificate")
+    try:
+        table = np.array(lines[1:], float)
+    except ValueError as error:
+        raise BadInput(f"{path}: {error}") from None
+    for name in columns.keys() - set(certificate.joints):
+        still = np.abs(table[:, columns[name]] - certificate.held.get(name, 0.0)) <= 1e-9
+        demand(still.all(), f"{path} has {name} elsewhere than the certificate")
+    rows = table[:, [columns[name] for name in certificate.joints]]
+    if certificate.tolerance:
+        demand(len(rows) and _are_near(certificate, rows), f"{path} leaves the curves of the certificate")
+        return
+    points = np.concatenate([certificate.curves[:, 0], certificate.curves[-1:, 2]])
+    demand(rows.shape == points.shape and (rows == points).all(), f"{path} has other waypoints than the certificate")
+
+
+def _are_near(certificate: Certificate, rows: Floats) -> bool:
+    """Return whether states, and the straight ways between them, follow the curves within their tolerance."""
+    t = (np.arange(_FINE) / _FINE)[:, None]
+    first, middle, last = np.moveaxis(certificate.curves, 1, 0)[:, :, None]
+    places = ((1 - t) ** 2 * first + 2 * t * (1 - t) * middle + t**2 * last).reshape(-1, rows.shape[1])
+    places = np.concatenate([places, certificate.curves[-1:, 2]])
+    # Between two places a curve is as far from its chord as its second derivative allows.
+    bend = np.linalg.norm(2 * (last - 2 * middle + first), axis=-1).max()
+    near, at = certificate.tolerance - bend / _FINE**2 / 8.0, 0
+    for i in range(len(rows)):
+        before = at
+        while at + 2 < len(places) and _distance(rows[i], places[at + 1 : at + 3]) < _distance(
+            rows[i], places[at : at + 2]
+        ):
+            at += 1
+        if not _distance(rows[i], places[at : at + 2]) <= near:
+            return False
+        way = rows[max(0, i - 1) : i + 1]
+        if any(not _distance(place, way) <= near for place in places[before + 1 : at + 1]):
+            return False
+    return bool(np.linalg.norm(rows[-1] - places[-1]) <= near)
+
+
+def _distance(point: Floats, ends: Floats) -> float:
+    """Return the distance of a point from a segment."""
+    way, apart = ends[-1] - ends[0], point - ends[0]
+    share = np.clip(apart @ way / max(float(way @ way), 1e-300), 0.0, 1.0)
+    return float(np.linalg.norm(apart - share * way))

@@ -1,0 +1,113 @@
+"""Constraints of a certificate: an upright axis, and a tip on its line, in its plane or box; against kinematics."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.certificates.certify import certify
+from evenroad.certificates.sources import Sources
+from evenroad.constraints import KeepInBox, KeepInPlane, KeepOnLine, KeepOrientation, KeepUpright
+from evenroad.constraints.constrained_world import kept_world
+from evenroad.errors import InvalidValue, NotAvailable
+from evenroad_verify.certificate import read_certificate
+from evenroad_verify.claim import read_inputs
+from tests.certificates.written import accepts, box_reach, joined, parts_of
+from tests.robots.oracle import link_poses
+
+START = np.array([0.3, -1.2, 1.4, -1.8, -1.5, 0.2])
+GOAL = START + np.array([0.25, 0.1, -0.15, 0.1, 0.05, 0.2])
+UP = np.array([0.0, 0.0, 1.0])
+KEEPS = {
+    "axis": KeepUpright(0.2, "-z"),
+    "line": KeepOnLine((0.3, 1.0, 0.2), within=2e-3),
+    "plane": KeepInPlane("x", within=2e-3),
+    "box": KeepInBox((-1.0, -1.0, 0.2), (1.0, 1.0, 0.5), within=1e-3),
+}
+
+
+def _off(keep, q):
+    """Return by how much states, (n, dim), are off a constraint, by the oracle's kinematics."""
+    turn, at = link_poses(box_reach().world.robot, q)["tool0"]
+    if isinstance(keep, KeepUpright):
+        return np.arccos(np.clip(-turn[:, 2, 2], -1.0, 1.0))
+    if isinstance(keep, KeepInBox):
+        return np.linalg.norm(np.maximum(np.maximum(keep.low - at, at - keep.high), 0.0), axis=1)
+    apart, normal = at - np.array(keep.through), np.array(keep.normal)
+    along = np.outer(apart @ normal, normal)
+    return np.linalg.norm(apart - along if isinstance(keep, KeepOnLine) else along, axis=1)
+
+
+@pytest.fixture(scope="module", params=KEEPS)
+def kept(request, tmp_path_factory):
+    """Return a constraint, a path that keeps it, and its certificate with what it carries."""
+    file = tmp_path_factory.mktemp("kept") / "kept.cert"
+    world = kept_world(er.ArmWorld("ur5"), (KEEPS[request.param],), START, "tool0")
+    ends, done = world.projected(np.stack([START, GOAL]))
+    assert done.all()
+    path = world.along(ends[0], ends[1])
+    assert path is not None
+    certify(world, path, Sources.named("ur5", None, embed=True), file)
+    return world, path, file.read_bytes()
+
+
+def inputs_in(data):
+    """Return what a certificate carries."""
+    return read_inputs(None, None, None, {}, read_certificate(data))
+
+
+def _between(path):
+    share = np.linspace(0.0, 1.0, 20)[:, np.newaxis]
+    return np.concatenate([a + share * (b - a) for a, b in itertools.pairwise(path)])
+
+
+def test_what_is_proved_holds_at_states_of_the_path(kept):
+    world, path, data = kept
+    assert accepts(data, inputs_in(data))
+    assert _off(world.keeps[0], _between(path)).max() <= world.keeps[0].within
+
+
+def _with_limit(data, limit):
+    """Return a certificate that claims its constraint within another limit."""
+    lines, *_ = parts_of(data)
+    (line,) = [line for line in lines if line.startswith(("axis ", "point "))]
+    kind, _, rest = line.split(" ", 2)
+    return data.replace(line.encode(), f"{kind} {limit!r} {rest}".encode())
+
+
+def test_a_tighter_limit_than_what_is_kept_is_refused(kept):
+    world, path, data = kept
+    most = float(_off(world.keeps[0], _between(path)).max())
+    assert not accepts(_with_limit(data, most - 1e-6), inputs_in(data))
+    assert accepts(_with_limit(data, 1.5 * world.keeps[0].within), inputs_in(data))
+
+
+def test_an_answer_to_a_constraint_is_that_it_is_kept(kept):
+    _, _, data = kept
+    certificate = read_certificate(data)
+    own = len(certificate.answers) - 1
+    lines, waypoints, packed, rest = parts_of(data)
+    for answer in (0, 1, 2, 4, 5):
+        other = bytearray(packed)
+        digits = [other[-1] % 6, other[-1] // 6 % 6, other[-1] // 36]
+        digits[own % 3] = answer
+        other[-1] = digits[0] + 6 * digits[1] + 36 * digits[2]
+        forged = joined(lines, waypoints, other, rest) + _carried(data)
+        assert not accepts(forged, inputs_in(data))
+
+
+def _carried(data):
+    return b"".join(len(each).to_bytes(8, "little") + each for each in read_certificate(data).carried)
+
+
+def test_a_path_that_leaves_its_constraint_has_no_certificate(tmp_path):
+    world = kept_world(er.ArmWorld("ur5"), (KeepOnLine("y", within=1e-3),), START, "tool0")
+    with pytest.raises(InvalidValue, match=r"share 0\.\d+: tool0 leaves its constraint"):
+        certify(world, np.stack([START, GOAL]), Sources.named("ur5", None), tmp_path / "kept.cert")
+
+
+def test_a_constraint_that_no_certificate_speaks_of_is_named(tmp_path):
+    world = kept_world(er.ArmWorld("ur5"), (KeepOrientation(),), START, "tool0")
+    with pytest.raises(NotAvailable, match="no certificate speaks of the constraint KeepOrientation"):
+        certify(world, np.stack([START, GOAL]), Sources.named("ur5", None), tmp_path / "kept.cert")

@@ -1,0 +1,126 @@
+"""Certificates of trajectories: parabolas near all that is driven, with rounded corners."""
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.certificates.certify import certify
+from evenroad.certificates.curves import driven
+from evenroad.certificates.sources import Sources
+from evenroad.cli import main
+from evenroad.errors import InvalidValue
+from evenroad_verify.certificate import read_certificate
+from evenroad_verify.claim import read_inputs
+from evenroad_verify.command import main as verify
+from tests.certificates.small import sources_in
+from tests.certificates.written import PLAN, accepts, box_reach, joined, parts_of, touches
+
+TOLERANCE = 1e-5
+
+
+def _distances(curves, states):
+    """Return the distance of each state from the nearest of many places of the curves."""
+    t = np.linspace(0.0, 1.0, 401)[:, np.newaxis]
+    p0, p1, p2 = np.moveaxis(curves.controls, 1, 0)[:, :, np.newaxis]
+    places = ((1 - t) ** 2 * p0 + 2 * t * (1 - t) * p1 + t**2 * p2).reshape(-1, states.shape[1])
+    found = []
+    for state in states:
+        way, apart = places[1:] - places[:-1], state - places[:-1]
+        share = np.clip((apart * way).sum(1) / np.maximum((way**2).sum(1), 1e-300), 0.0, 1.0)
+        found.append(np.linalg.norm(apart - share[:, np.newaxis] * way, axis=1).min())
+    return np.array(found)
+
+
+def test_lines_become_one_curve_and_arcs_a_few():
+    angle = np.linspace(0.0, 0.5 * np.pi, 60)
+    arc = 0.3 * np.column_stack([np.sin(angle), 1.0 - np.cos(angle)])
+    first = np.linspace([-1.0, 0.0], [0.0, 0.0], 50)[:-1]
+    last = np.linspace(arc[-1], arc[-1] + [0.0, 1.0], 50)[1:]
+    still = np.repeat(last[-1:], 5, axis=0)
+    states = np.concatenate([first, arc, last, still, last[::-1]])
+    curves = driven(states, 1e-4)
+    assert 5 <= len(curves.controls) <= 12
+    np.testing.assert_array_equal(curves.points[[0, -1]], states[[0, -1]])
+    assert _distances(curves, states[::7]).max() < 1e-4
+
+
+@pytest.fixture(scope="module")
+def reach():
+    return er.plan(box_reach().world, "home", "inside").trajectory(speed=0.5, deviation=0.1)
+
+
+@pytest.fixture(scope="module")
+def written(reach, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("driven")
+    certify(box_reach().world, box_reach().path, Sources.named("ur5", "box-reach"), folder / "reach.cert",
+            states=reach.positions)  # fmt: skip
+    return (folder / "reach.cert").read_bytes()
+
+
+def test_a_trajectory_with_rounded_corners_is_proved(reach, written):
+    certificate = read_certificate(written)
+    assert certificate.tolerance == TOLERANCE
+    assert len(certificate.curves) < 0.2 * len(reach.positions)
+    assert accepts(written, box_reach().inputs())
+    assert not touches(box_reach(), reach.positions[::5], states=3)
+
+
+def test_a_control_point_that_moves_is_refused_unless_the_curve_is_free(written):
+    rng = np.random.default_rng(0)
+    for _ in range(4):
+        lines, points, packed, directions = parts_of(written)
+        points[rng.integers(len(points)), rng.integers(6)] += 0.3
+        assert not accepts(joined(lines, points, packed, directions), box_reach().inputs())
+
+
+def test_a_larger_tolerance_than_is_proved_is_refused(written):
+    assert not accepts(written.replace(b"tolerance 1e-05", b"tolerance 1e-01"), box_reach().inputs())
+    assert accepts(written.replace(b"tolerance 1e-05", b"tolerance 1e-06"), box_reach().inputs())
+
+
+def test_joints_within_the_tolerance_may_use_up_a_gap(tmp_path):
+    """The ball, 1.1 m from the axis at its farthest, has 1 mm to a wall that it comes to only beyond the curve."""
+    wall = "obstacles:\n  wall: {{shape: box, size: [2, 0.2, 2], xyz: [0, {y!r}, 0]}}\n"
+    for gap, tolerance, free in ((1e-3, 5e-4, True), (1e-3, 2e-3, False)):
+        sources = sources_in(tmp_path, wall.format(y=float(np.sin(1.0)) + 0.2 + gap))
+        world = er.ArmWorld(er.load_robot(sources.robot), er.load_scene(sources.scene))
+        path = np.array([[0.0], [1.0]])
+        certify(world, path, sources, tmp_path / "arm.cert", states=np.linspace(0.0, 1.0, 9)[:, np.newaxis])
+        data = (tmp_path / "arm.cert").read_bytes()
+        inputs = read_inputs(sources.robot, sources.scene, None, {})
+        assert accepts(data, inputs)
+        # A bound of what the joint may move beyond the curve is its lever, 1.1 m, times the tolerance.
+        wider = data.replace(b"tolerance 1e-05", f"tolerance {tolerance!r}".encode())
+        assert accepts(wider, inputs) is free
+
+
+def test_the_command_certifies_what_is_driven_and_compares_its_table(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main([*PLAN, "--certificate", "reach.cert", "--trajectory", "go.csv"]) == 0
+    assert "reach.cert of the trajectory" in capsys.readouterr().out
+    files = [str(each) for each in (box_reach().sources.robot, box_reach().sources.scene, box_reach().sources.srdf)]
+    assert verify(["reach.cert", *files, "--path", "go.csv"]) == 0
+    assert "every joint may be 1e-05 off the curves" in capsys.readouterr().out
+    header, *rows = (tmp_path / "go.csv").read_text().splitlines()
+    table = np.array([row.split(",") for row in rows], float)
+    for change in ("a state", "an end", "a jump", "a column"):
+        other, names = table.copy(), header
+        if change == "a state":
+            other[100, 2] += 1e-4
+        elif change == "an end":
+            other = other[:-20]
+        elif change == "a jump":
+            other = np.concatenate([other[:60], other[200:]])
+        else:
+            names = header.replace("elbow_joint", "elbow")
+        text = "\n".join([names, *(",".join(map(repr, row)) for row in other.tolist())])
+        (tmp_path / "go.csv").write_text(text)
+        assert verify(["reach.cert", *files, "--path", "go.csv"]) == 1
+
+
+def test_states_that_touch_have_no_certificate(reach, tmp_path):
+    far = np.linspace(reach.positions[0], reach.positions[0] + [0.0, 1.5, 0.0, 0.0, 0.0, 0.0], 20)
+    with pytest.raises(InvalidValue, match="no certificate: motion 0 at share"):
+        certify(
+            box_reach().world, box_reach().path, Sources.named("ur5", "box-reach"), tmp_path / "bad.cert", states=far
+        )
