@@ -1,6 +1,5 @@
 #include "base.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,21 +75,6 @@ void read_numbers(const char* text, double* numbers, size_t count, const char* w
   }
   if (text[strspn(text, " \t\r\n")]) fail(BAD_INPUT, "%s: more than %zu numbers", where, count);
 }
-
-Vector sum(Vector a, Vector b) { return (Vector){a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vector difference(Vector a, Vector b) { return (Vector){a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vector scaled(double factor, Vector a) { return (Vector){factor * a.x, factor * a.y, factor * a.z}; }
-Vector cross(Vector a, Vector b) {
-  return (Vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double length(Vector a) { return sqrt(dot(a, a)); }
-
-Vector turned(const Pose* pose, Vector a) {
-  return sum(scaled(a.x, pose->x), sum(scaled(a.y, pose->y), scaled(a.z, pose->z)));
-}
-Vector placed(const Pose* pose, Vector a) { return sum(turned(pose, a), pose->at); }
-Vector turned_in(const Pose* pose, Vector a) { return (Vector){dot(pose->x, a), dot(pose->y, a), dot(pose->z, a)}; }
 
 Pose composed(const Pose* outer, const Pose* inner) {
   return (Pose){turned(outer, inner->x), turned(outer, inner->y), turned(outer, inner->z), placed(outer, inner->at)};

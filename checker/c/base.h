@@ -2,6 +2,7 @@
 #ifndef EVENROAD_BASE_H
 #define EVENROAD_BASE_H
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -46,15 +47,24 @@ typedef struct {
   Vector x, y, z, at;
 } Pose;
 
-Vector sum(Vector a, Vector b);
-Vector difference(Vector a, Vector b);
-Vector scaled(double factor, Vector a);
-Vector cross(Vector a, Vector b);
-double dot(Vector a, Vector b);
-double length(Vector a);
-Vector turned(const Pose* pose, Vector a);    /* a direction of the frame, seen from outside */
-Vector placed(const Pose* pose, Vector a);    /* a point of the frame, seen from outside */
-Vector turned_in(const Pose* pose, Vector a); /* a direction from outside, seen in the frame */
+static inline Vector sum(Vector a, Vector b) { return (Vector){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static inline Vector difference(Vector a, Vector b) { return (Vector){a.x - b.x, a.y - b.y, a.z - b.z}; }
+static inline Vector scaled(double factor, Vector a) { return (Vector){factor * a.x, factor * a.y, factor * a.z}; }
+static inline double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline double length(Vector a) { return sqrt(dot(a, a)); }
+static inline Vector cross(Vector a, Vector b) {
+  return (Vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/* A direction and a point of a frame, seen from outside; and a direction from outside, seen in the frame. */
+static inline Vector turned(const Pose* pose, Vector a) {
+  return sum(scaled(a.x, pose->x), sum(scaled(a.y, pose->y), scaled(a.z, pose->z)));
+}
+static inline Vector placed(const Pose* pose, Vector a) { return sum(turned(pose, a), pose->at); }
+static inline Vector turned_in(const Pose* pose, Vector a) {
+  return (Vector){dot(pose->x, a), dot(pose->y, a), dot(pose->z, a)};
+}
+
 Pose composed(const Pose* outer, const Pose* inner);
 Pose identity(void);
 Pose pose_of_turn(Vector axis, double angle);

@@ -1,6 +1,5 @@
 #include "cells.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 static const double OUTSIDE = 0.001; /* by how much a cell may miss a configuration that it holds, in units */

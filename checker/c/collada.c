@@ -1,4 +1,3 @@
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -103,6 +102,7 @@ static void add_polygon(const Reader* in, const Corners* of, const size_t* numbe
 
 /* Triangles, a list of polygons with their counts, or polygons of their own. */
 static void add_primitive(const Reader* in, const Entry* mesh, const Entry* primitive, const Pose* pose) {
+  ++in->mesh->part;
   const Entry* input = input_of(primitive, "VERTEX");
   if (!input) fail(BAD_INPUT, "%s: <%s> without corners", in->path, primitive->key);
   const Entry* vertices = with_id(mesh, "vertices", text_of(input, "@source", NULL), in);

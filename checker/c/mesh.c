@@ -1,5 +1,4 @@
 #include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,9 +8,15 @@ void add_triangle(Mesh* mesh, Vector a, Vector b, Vector c) {
   if (mesh->triangles == mesh->room) {
     mesh->room = 2 * mesh->room + 16;
     Vector* corners = take(mesh->room, 3 * sizeof *corners);
-    if (mesh->triangles) memcpy(corners, mesh->corners, mesh->triangles * 3 * sizeof *corners);
+    size_t* parts = take(mesh->room, sizeof *parts);
+    if (mesh->triangles) {
+      memcpy(corners, mesh->corners, mesh->triangles * 3 * sizeof *corners);
+      memcpy(parts, mesh->parts, mesh->triangles * sizeof *parts);
+    }
     mesh->corners = corners;
+    mesh->parts = parts;
   }
+  mesh->parts[mesh->triangles] = mesh->part;
   Vector* to = mesh->corners + 3 * mesh->triangles++;
   to[0] = a;
   to[1] = b;
@@ -131,7 +136,7 @@ Mesh* read_mesh(File file, const char* path, const double scale[3]) {
 /* A corner of a triangle, or an edge between two numbered corners. */
 typedef struct {
   Vector at;
-  size_t triangle, corner, ends[2];
+  size_t triangle, corner, part, ends[2];
 } Part;
 
 static int by_place(const void* a, const void* b) {
@@ -149,6 +154,11 @@ void keep_distinct(Mesh* mesh) {
   }
 }
 
+static int by_part(const void* a, const void* b) {
+  const Part *p = a, *q = b;
+  return p->part != q->part ? (p->part < q->part ? -1 : 1) : by_place(a, b);
+}
+
 static int by_ends(const void* a, const void* b) {
   const size_t *p = ((const Part*)a)->ends, *q = ((const Part*)b)->ends;
   if (p[0] != q[0]) return p[0] < q[0] ? -1 : 1;
@@ -162,16 +172,16 @@ static size_t first_of(size_t* piece, size_t i) {
 
 void find_pieces(Mesh* mesh) {
   size_t count = 3 * mesh->triangles;
+  if (mesh->piece) return;
   Part* parts = take(count, sizeof *parts);
   size_t* number = take(count, sizeof *number);
-  if (mesh->piece) return;
   mesh->piece = take(mesh->triangles, sizeof *mesh->piece);
   mesh->closed = take(mesh->triangles, sizeof *mesh->closed);
   for (size_t i = 0; i < mesh->triangles; ++i) mesh->piece[i] = i;
-  for (size_t i = 0; i < count; ++i) parts[i] = (Part){mesh->corners[i], i / 3, i, {0, 0}};
-  qsort(parts, count, sizeof *parts, by_place);
+  for (size_t i = 0; i < count; ++i) parts[i] = (Part){mesh->corners[i], i / 3, i, mesh->parts[i / 3], {0, 0}};
+  qsort(parts, count, sizeof *parts, by_part);
   for (size_t i = 0; i < count; ++i) {
-    bool same = i && !by_place(parts + i - 1, parts + i);
+    bool same = i && !by_part(parts + i - 1, parts + i);
     number[parts[i].corner] = same ? number[parts[i - 1].corner] : i;
     if (!same) continue;
     size_t a = first_of(mesh->piece, parts[i - 1].triangle), b = first_of(mesh->piece, parts[i].triangle);

@@ -1,10 +1,9 @@
 #include "nodes.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double WIDEST = 1000;
+static const double WIDEST = 1000, FLAT = 1e-9;
 
 /* The corners of a mesh, of one element if it is convex, or the points of a cloud. */
 static void add_mesh(Solid* solid, const Shape* shape, const Pose* pose) {
@@ -68,14 +67,17 @@ static double disc_reach(const Solid* solid, Vector direction) {
 
 static double element_support(const Element* element, Vector direction, double size) {
   double most = -INFINITY;
-  for (size_t i = 0; i < element->solid->corners; ++i) most = fmax(most, dot(direction, element->corners[i]));
+  for (size_t i = 0; i < element->solid->corners; ++i) {
+    double there = dot(direction, element->corners[i]);
+    if (there > most) most = there;
+  }
   return most + element->solid->ball * size + disc_reach(element->solid, direction);
 }
 
 double support(const Node* node, Vector direction, bool by_box) {
   double size = length(direction), most = -INFINITY;
   if (by_box) {
-    double box = dot(direction, node->centre) + node->ball * size;
+    double box = dot(direction, node->centre);
     for (int i = 0; i < 3; ++i) box += fabs(dot(direction, node->half[i]));
     return box;
   }
@@ -83,27 +85,52 @@ double support(const Node* node, Vector direction, bool by_box) {
   return most;
 }
 
+/* Widen a range by a corner, and by what is about it. */
+static void widen(Vector* low, Vector* high, Vector at, Vector wide) {
+  if (at.x - wide.x < low->x) low->x = at.x - wide.x;
+  if (at.y - wide.y < low->y) low->y = at.y - wide.y;
+  if (at.z - wide.z < low->z) low->z = at.z - wide.z;
+  if (at.x + wide.x > high->x) high->x = at.x + wide.x;
+  if (at.y + wide.y > high->y) high->y = at.y + wide.y;
+  if (at.z + wide.z > high->z) high->z = at.z + wide.z;
+}
+
+static double beside(double along) { return sqrt(fmax(0, 1 - along * along)); }
+
+/* Find the box of a node, and its reach. */
 static void bound(Node* node) {
-  static const Vector axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Vector low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
   for (size_t i = 0; i < node->count; ++i) {
     const Solid* solid = node->elements[i].solid;
+    Vector wide = {solid->ball, solid->ball, solid->ball}, axis = solid->axis;
+    if (solid->disc > 0)
+      wide = sum(wide, scaled(solid->disc, (Vector){beside(axis.x), beside(axis.y), beside(axis.z)}));
+    double farthest = 0;
     for (size_t k = 0; k < solid->corners; ++k) {
-      double reach = length(node->elements[i].corners[k]) + solid->ball + solid->disc;
-      node->reach = fmax(node->reach, reach);
+      Vector corner = node->elements[i].corners[k];
+      double square = dot(corner, corner);
+      if (square > farthest) farthest = square;
+      widen(&low, &high, corner, wide);
     }
+    node->reach = fmax(node->reach, sqrt(farthest) + solid->ball + solid->disc);
   }
+  node->centre = scaled(0.5, sum(low, high));
+  Vector half = scaled(0.5, difference(high, low));
+  node->half[0] = (Vector){half.x, 0, 0};
+  node->half[1] = (Vector){0, half.y, 0};
+  node->half[2] = (Vector){0, 0, half.z};
   const Element* only = node->elements;
   if (node->count == 1 && (only->solid->shape->kind == BOX || only->solid->shape->kind == PLANE)) {
     const Vector* corners = only->corners;
+    Vector edges[3];
+    double ball = only->solid->ball, shortest = INFINITY;
+    for (int i = 0; i < 3; ++i) {
+      edges[i] = scaled(0.5, difference(corners[1 << i], corners[0]));
+      shortest = fmin(shortest, length(edges[i]));
+    }
+    if (ball > 0 && !(shortest > FLAT)) return;
     node->centre = scaled(0.5, sum(corners[0], corners[7]));
-    for (int i = 0; i < 3; ++i) node->half[i] = scaled(0.5, difference(corners[1 << i], corners[0]));
-    node->ball = only->solid->ball;
-    return;
-  }
-  for (int i = 0; i < 3; ++i) {
-    double high = support(node, axes[i], false), low = -support(node, scaled(-1, axes[i]), false);
-    node->centre = sum(node->centre, scaled((low + high) / 2, axes[i]));
-    node->half[i] = scaled((high - low) / 2, axes[i]);
+    for (int i = 0; i < 3; ++i) node->half[i] = scaled(1 + (ball > 0 ? ball / length(edges[i]) : 0), edges[i]);
   }
 }
 
@@ -129,10 +156,37 @@ typedef struct {
   Element element;
 } Keyed;
 
-static int by_key(const void* a, const void* b) {
-  const Keyed *p = a, *q = b;
-  if (p->key != q->key) return p->key < q->key ? -1 : 1;
-  return (p->element.order > q->element.order) - (p->element.order < q->element.order);
+static bool is_before(const Keyed* a, const Keyed* b) {
+  return a->key != b->key ? a->key < b->key : a->element.order < b->element.order;
+}
+
+static int by_key(const void* a, const void* b) { return is_before(b, a) - is_before(a, b); }
+
+/* Bring the first `middle` elements to the front: by parts about a pivot or, where these do not shrink, by sorting. */
+static void select_first(Keyed* keyed, size_t count, size_t middle) {
+  size_t from = 0, to = count;
+  for (int tries = 0; to - from > 16; ++tries) {
+    if (tries > 60) {
+      qsort(keyed + from, to - from, sizeof *keyed, by_key);
+      return;
+    }
+    Keyed pivot = keyed[from + (to - from) / 2], swapped;
+    size_t low = from, high = to - 1;
+    for (;; ++low, --high) {
+      while (is_before(keyed + low, &pivot)) ++low;
+      while (is_before(&pivot, keyed + high)) --high;
+      if (low >= high) break;
+      swapped = keyed[low];
+      keyed[low] = keyed[high];
+      keyed[high] = swapped;
+    }
+    if (low > middle) {
+      to = low;
+    } else {
+      from = low;
+    }
+  }
+  qsort(keyed + from, to - from, sizeof *keyed, by_key);
 }
 
 static Vector mean(const Element* element) {
@@ -174,7 +228,7 @@ Node* half_of(Node* node, bool second) {
     for (size_t i = 0; i < node->count; ++i) {
       keyed[i] = (Keyed){coordinate(means[i], axis), node->elements[i]};
     }
-    qsort(keyed, node->count, sizeof *keyed, by_key);
+    select_first(keyed, node->count, node->count / 2);
     for (size_t i = 0; i < node->count; ++i) node->elements[i] = keyed[i].element;
     free(means);
     free(keyed);

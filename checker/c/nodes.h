@@ -15,7 +15,7 @@ typedef struct {
   Vector axis;       /* of the disc, in the frame */
   const Vector* all; /* corners of all its elements, in the frame */
   size_t elements;
-  bool counted; /* its open pieces */
+  bool* met; /* of a mesh, the open pieces whose boxes hold a point of another body */
 } Solid;
 
 typedef struct {
@@ -28,7 +28,6 @@ typedef struct Node {
   Element* elements;
   size_t count, frame;
   Vector centre, half[3]; /* of the box */
-  double ball;            /* about the box */
   double reach;           /* the largest distance of a point from the frame's origin */
   struct Node *first, *second;
   Solid** solids; /* of a whole node */

@@ -1,7 +1,5 @@
 #include "proof.h"
 
-#include <math.h>
-
 enum { MOST_HALVINGS = 40 };
 enum { HALVE_STRETCH, HALVE_FIRST, HALVE_SECOND, ALONG_CENTRES, ALONG_BY_BOXES, ALONG_BY_CORNERS };
 

@@ -1,7 +1,5 @@
 #include "solids.h"
 
-#include <math.h>
-
 #include "proof.h"
 
 enum { PASSES, CROSSES, UNCLEAR };
@@ -57,6 +55,12 @@ static bool holds(const Range* range, Vector a) {
          range->low.z <= a.z && a.z <= range->high.z;
 }
 
+static void find_all_pieces(const Node* node) {
+  for (size_t i = 0; i < node->solid_count; ++i) {
+    if (is_surface(node->solids[i])) find_pieces(node->solids[i]->shape->mesh);
+  }
+}
+
 /* Where each piece of `inner` begins, as the frame of another node sees it. */
 static Vector* beginnings(const Node* inner, const Pose* from, const Pose* to, size_t* count) {
   Vector* points = take(inner->count + 1, sizeof *points);
@@ -72,34 +76,39 @@ static Vector* beginnings(const Node* inner, const Pose* from, const Pose* to, s
   return points;
 }
 
-static void require_outside_of(const Solid* outer, const Vector* points, size_t count) {
+/* Refuse points inside of closed pieces of a solid; count the open ones around whose inside nothing is claimed. */
+static size_t require_outside_of(Solid* outer, const Vector* points, size_t count) {
   const Mesh* mesh = outer->shape->mesh;
+  size_t opened = 0;
   Range* ranges = take(mesh->triangles, sizeof *ranges);
+  if (!outer->met) outer->met = take(mesh->triangles, sizeof *outer->met);
   for (size_t i = 0; i < 3 * mesh->triangles; ++i) {
     size_t piece = mesh->piece[i / 3];
     if (i == 3 * piece) ranges[piece] = (Range){outer->all[i], outer->all[i]};
     widen(ranges + piece, outer->all[i]);
   }
   for (size_t piece = 0; piece < mesh->triangles; ++piece) {
-    if (mesh->piece[piece] != piece || !mesh->closed[piece]) continue;
+    if (mesh->piece[piece] != piece || outer->met[piece]) continue;
     for (size_t i = 0; i < count; ++i) {
-      if (holds(ranges + piece, points[i]) && is_inside(points[i], outer, piece)) {
-        fail(REFUSED, "a body is inside of another one");
-      }
+      if (!holds(ranges + piece, points[i])) continue;
+      if (mesh->closed[piece] && is_inside(points[i], outer, piece)) fail(REFUSED, "a body is inside of another one");
+      if (!mesh->closed[piece] && !outer->met[piece]) opened += outer->met[piece] = true;
     }
   }
+  return opened;
 }
 
-static size_t open_pieces(const Node* node) {
-  size_t count = 0;
-  for (size_t i = 0; i < node->solid_count; ++i) {
-    Solid* solid = node->solids[i];
-    if (!is_surface(solid) || solid->counted) continue;
-    solid->counted = true;
-    const Mesh* mesh = solid->shape->mesh;
-    for (size_t k = 0; k < mesh->triangles; ++k) count += mesh->piece[k] == k && !mesh->closed[k];
+/* Tell whether the box of a node meets that of another one, along the axes of the other's frame. */
+static bool boxes_meet(const Node* inner, const Pose* from, const Node* outer, const Pose* to) {
+  const Vector axes[3] = {to->x, to->y, to->z}, own[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int i = 0; i < 3; ++i) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+      Vector way = scaled(sign, axes[i]), back = scaled(-sign, own[i]);
+      double far = support(inner, turned_in(from, way), true) + dot(way, difference(from->at, to->at));
+      if (far + support(outer, back, true) < 0) return false;
+    }
   }
-  return count;
+  return true;
 }
 
 size_t require_outside(const Model* model) {
@@ -110,17 +119,15 @@ size_t require_outside(const Model* model) {
     const Pair* pair = model->pairs + i;
     const Node* nodes[2] = {pair->first, pair->second};
     for (int k = 0; k < 2 && !pair->apart; ++k) {
-      for (size_t s = 0; s < nodes[k]->solid_count; ++s) {
-        if (is_surface(nodes[k]->solids[s])) find_pieces(nodes[k]->solids[s]->shape->mesh);
-      }
-      opened += open_pieces(nodes[k]);
-    }
-    for (int k = 0; k < 2 && !pair->apart; ++k) {
+      const Node *inner = nodes[k], *outer = nodes[1 - k];
+      const Pose *from = &moved[inner->frame].pose, *to = &moved[outer->frame].pose;
+      if (!boxes_meet(inner, from, outer, to)) continue;
+      find_all_pieces(inner);
+      find_all_pieces(outer);
       size_t count = 0;
-      const Pose *from = &moved[nodes[k]->frame].pose, *to = &moved[nodes[1 - k]->frame].pose;
-      const Vector* points = beginnings(nodes[k], from, to, &count);
-      for (size_t s = 0; s < nodes[1 - k]->solid_count; ++s) {
-        if (is_surface(nodes[1 - k]->solids[s])) require_outside_of(nodes[1 - k]->solids[s], points, count);
+      const Vector* points = beginnings(inner, from, to, &count);
+      for (size_t s = 0; s < outer->solid_count; ++s) {
+        if (is_surface(outer->solids[s])) opened += require_outside_of(outer->solids[s], points, count);
       }
     }
   }

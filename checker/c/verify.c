@@ -1,6 +1,5 @@
 #include "verify.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -167,11 +166,9 @@ void print_no_path(const NoPath* shown) {
   const Model* model = shown->model;
   const Certificate* certificate = model->certificate;
   size_t bodies = model->body_count + model->inputs->obstacle_count, pairs = 0;
-  printf("PROVED: no path leads from the start to ");
-  if (certificate->goals == 1) printf("the goal");
-  if (certificate->goals > 1) printf("any of the %zu goals", certificate->goals);
-  printf(": each one touches something");
+  printf("PROVED: no path leads from the start to any goal: each one touches something");
   print_kept(certificate);
+  printf("  goals: %zu configurations\n", certificate->goals);
   for (size_t i = 0; i < certificate->joint_count; ++i) {
     printf("  %s: from %.6g", certificate->joints[i], certificate->values[i]);
     for (size_t goal = 1; goal <= certificate->goals; ++goal) {

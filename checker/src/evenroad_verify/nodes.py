@@ -41,7 +41,9 @@ class Nodes:
             corner, radius = parts[0][0].points, parts[0][0].radius
             edges = 0.5 * np.stack([corner[4] - corner[0], corner[2] - corner[0], corner[1] - corner[0]])
             length = np.linalg.norm(edges, axis=1, keepdims=True)
-            centre, box = 0.5 * (corner[0] + corner[7]), edges * (1.0 + radius / np.maximum(length, 1e-12))
+            # A flat box with a ball around it keeps the box along the frame's axes.
+            if radius == 0.0 or length.min() > 1e-9:
+                centre, box = 0.5 * (corner[0] + corner[7]), edges * (1.0 + radius / np.maximum(length, 1e-12))
         self.frame.append(frame)
         self.reach.append(reach)
         self.centre.append(centre)
