@@ -9,7 +9,8 @@ typedef struct {
   size_t triangles, room;
   size_t part, *parts; /* of the file, for each triangle: pieces are within one */
   size_t distinct;     /* corners after `keep_distinct`, which leaves them sorted */
-  /* From `find_pieces`: for each triangle the first one of its piece, and whether that piece is closed. */
+  /* From `find_pieces`: for each triangle the first one of its piece, NONE for one that repeats an earlier one,
+   * and whether that piece is closed. */
   size_t* piece;
   bool* closed;
 } Mesh;

@@ -165,14 +165,38 @@ static int by_ends(const void* a, const void* b) {
   return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
+static int by_corners(const void* a, const void* b) {
+  const Part *p = a, *q = b;
+  int order = by_ends(p, q);
+  if (!order) order = (p->corner > q->corner) - (p->corner < q->corner);
+  return order ? order : (p->triangle > q->triangle) - (p->triangle < q->triangle);
+}
+
+/* Leave triangles with the corners of an earlier one out of the pieces: two of them would hide what is inside. */
+static void leave_out_equal(Mesh* mesh, const size_t* number) {
+  Part* parts = take(mesh->triangles, sizeof *parts);
+  for (size_t i = 0; i < mesh->triangles; ++i) {
+    size_t a = number[3 * i], b = number[3 * i + 1], c = number[3 * i + 2];
+    size_t low = a < b ? a : b, high = a < b ? b : a;
+    if (c < low) low = c;
+    if (c > high) high = c;
+    parts[i] = (Part){.triangle = i, .corner = high, .ends = {low, a + b + c - low - high}};
+  }
+  qsort(parts, mesh->triangles, sizeof *parts, by_corners);
+  for (size_t i = 1; i < mesh->triangles; ++i) {
+    bool same = !by_ends(parts + i - 1, parts + i) && parts[i - 1].corner == parts[i].corner;
+    if (same) mesh->piece[parts[i].triangle] = NONE;
+  }
+}
+
 static size_t first_of(size_t* piece, size_t i) {
   while (piece[i] != i) i = piece[i] = piece[piece[i]];
   return i;
 }
 
 void find_pieces(Mesh* mesh) {
-  size_t count = 3 * mesh->triangles;
   if (mesh->piece) return;
+  size_t count = 3 * mesh->triangles, edges = 0;
   Part* parts = take(count, sizeof *parts);
   size_t* number = take(count, sizeof *number);
   mesh->piece = take(mesh->triangles, sizeof *mesh->piece);
@@ -187,17 +211,19 @@ void find_pieces(Mesh* mesh) {
     size_t a = first_of(mesh->piece, parts[i - 1].triangle), b = first_of(mesh->piece, parts[i].triangle);
     mesh->piece[a < b ? b : a] = a < b ? a : b;
   }
-  for (size_t i = 0; i < count; ++i) {
-    size_t a = number[i], b = number[i % 3 == 2 ? i - 2 : i + 1];
-    parts[i] = (Part){.triangle = i / 3, .ends = {a < b ? a : b, a < b ? b : a}};
-  }
-  qsort(parts, count, sizeof *parts, by_ends);
   for (size_t i = 0; i < mesh->triangles; ++i) {
     mesh->piece[i] = first_of(mesh->piece, i);
     mesh->closed[i] = true;
   }
-  for (size_t i = 0, next; i < count; i = next) {
-    for (next = i + 1; next < count && !by_ends(parts + i, parts + next);) ++next;
+  leave_out_equal(mesh, number);
+  for (size_t i = 0; i < count; ++i) {
+    size_t a = number[i], b = number[i % 3 == 2 ? i - 2 : i + 1];
+    if (mesh->piece[i / 3] == NONE) continue;
+    parts[edges++] = (Part){.triangle = i / 3, .ends = {a < b ? a : b, a < b ? b : a}};
+  }
+  qsort(parts, edges, sizeof *parts, by_ends);
+  for (size_t i = 0, next; i < edges; i = next) {
+    for (next = i + 1; next < edges && !by_ends(parts + i, parts + next);) ++next;
     bool edge = parts[i].ends[0] != parts[i].ends[1];
     if (edge && (next - i) % 2) mesh->closed[mesh->piece[parts[i].triangle]] = false;
   }

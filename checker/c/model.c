@@ -123,7 +123,9 @@ static void refuse_unknown_names(const Inputs* inputs, const Certificate* certif
   }
   for (size_t i = 0; i < certificate->held_count; ++i) {
     const char* name = certificate->held[i].name;
-    if (joint_named(inputs, name) == NONE) fail(REFUSED, "no joint that can be held: %.60s", name);
+    size_t joint = joint_named(inputs, name);
+    bool stands = joint != NONE && inputs->joints[joint].kind != FIXED && inputs->joints[joint].follows == NONE;
+    if (!stands || column_of(certificate, name) != NONE) fail(REFUSED, "no joint that can be held: %.60s", name);
   }
 }
 

@@ -84,6 +84,7 @@ static size_t require_outside_of(Solid* outer, const Vector* points, size_t coun
   if (!outer->met) outer->met = take(mesh->triangles, sizeof *outer->met);
   for (size_t i = 0; i < 3 * mesh->triangles; ++i) {
     size_t piece = mesh->piece[i / 3];
+    if (piece == NONE) continue;
     if (i == 3 * piece) ranges[piece] = (Range){outer->all[i], outer->all[i]};
     widen(ranges + piece, outer->all[i]);
   }

@@ -38,7 +38,17 @@ Proved verify(const Inputs* inputs, const Certificate* certificate) {
   return proved;
 }
 
+static bool is_straight(const Certificate* certificate) {
+  size_t joints = certificate->joint_count;
+  for (size_t i = 0; certificate->degree == 2 && i < certificate->motions * joints; ++i) {
+    const double* p = certificate->values + 2 * (i / joints) * joints + i % joints;
+    if (!(fabs(p[joints] - 0.5 * (p[0] + p[2 * joints])) < 1e-12)) return false;
+  }
+  return true;
+}
+
 void require_same_path(const Certificate* certificate, const char* path) {
+  if (!is_straight(certificate)) fail(REFUSED, "it proves curves, which no table of waypoints gives");
   File file = read_file(path);
   char* text = copied((const char*)file.data, file.size);
   size_t row = 0, joints = certificate->joint_count, ends = certificate->motions + 1;
@@ -126,15 +136,6 @@ static void print_kept(const Certificate* certificate) {
     printf(", %s %g m more", certificate->padding[i].name, certificate->padding[i].value);
   }
   printf("\n");
-}
-
-static bool is_straight(const Certificate* certificate) {
-  size_t joints = certificate->joint_count;
-  for (size_t i = 0; certificate->degree == 2 && i < certificate->motions * joints; ++i) {
-    const double* p = certificate->values + 2 * (i / joints) * joints + i % joints;
-    if (!(fabs(p[joints] - 0.5 * (p[0] + p[2 * joints])) < 1e-12)) return false;
-  }
-  return true;
 }
 
 void print_proved(const Proved* proved) {

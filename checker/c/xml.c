@@ -90,14 +90,16 @@ static void element(Reader* in, Entry* parent, int depth) {
   ++in->at;
   size_t size = strcspn(in->at, "<");
   entry->text = plain(in, in->at, size);
-  for (;;) {
-    in->at += strcspn(in->at, "<");
+  bool leaf = true;
+  for (in->at += size;; in->at += strcspn(in->at, "<")) {
     skip_beside(in);
     if (!*in->at) fail(BAD_INPUT, "%s: <%s> does not end", in->file, tag);
+    if (*in->at != '<' && leaf) fail(BAD_INPUT, "%s: <%s> has a text in parts", in->file, tag);
     if (*in->at != '<') continue;
     ++in->at;
     if (*in->at == '/') break;
     element(in, entry, depth + 1);
+    leaf = false;
   }
   ++in->at;
   if (strcmp(name(in), tag) != 0) fail(BAD_INPUT, "%s: <%s> ends with another name", in->file, tag);

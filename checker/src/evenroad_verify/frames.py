@@ -75,7 +75,8 @@ class Frames:
 def frames_of(robot: Robot, certificate: Certificate) -> Frames:
     """Return the frames of a robot that the joints of a certificate move; other joints stay where it holds them."""
     names = {joint.name: joint for joint in robot.joints}
-    demand(set(certificate.held) <= names.keys(), "a joint that is held is none of the robot's")
+    alone = {name for name, joint in names.items() if joint.kind != "fixed" and joint.leader == name}
+    demand(certificate.held.keys() <= alone - set(certificate.joints), "a joint that is held is none that can be")
     place: dict[str, tuple[int, Pose]] = {robot.links[0]: (0, (np.eye(3), np.zeros(3)))}
     moved: list[tuple[int, Joint, Pose, int, float, float]] = []
     found = set[str]()

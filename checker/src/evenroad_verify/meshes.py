@@ -21,7 +21,9 @@ def read_mesh(data: bytes, name: str, scale: Floats) -> list[Shape]:
     suffix = Path(name).suffix.lower()
     require(suffix in (".stl", ".obj", ".dae"), f"meshes are STL, OBJ or DAE, not {name}")
     if suffix == ".dae":
-        return [surface(triangles, at, scale) for triangles, at in _collada(data, name)]
+        parts = [surface(triangles, at, scale) for triangles, at in _collada(data, name)]
+        require(parts, f"{name} has no triangles")
+        return parts
     count = int.from_bytes(data[80:84], "little")
     if suffix == ".stl" and len(data) == 84 + 50 * count > 84:
         triangles = np.frombuffer(data[84:], _STL)["corners"].astype(float)
@@ -108,6 +110,7 @@ def _step(kind: str, text: str) -> Pose:
 
 
 def _parts(ids: dict[str | None, ET.Element], geometry: ET.Element) -> Iterator[Floats]:
+    require(only(geometry, "mesh") is not None, "a geometry is no mesh")
     for mesh in geometry.findall("mesh"):
         for part in mesh:
             require(part.tag not in ("trifans", "tristrips"), f"a mesh has <{part.tag}>")
@@ -117,10 +120,14 @@ def _parts(ids: dict[str | None, ET.Element], geometry: ET.Element) -> Iterator[
 
 def _part(ids: dict[str | None, ET.Element], part: ET.Element) -> Floats:
     inputs = {each.get("semantic"): each for each in part.findall("input")}
-    wide = 1 + max(int(number(each.get("offset", "0"))) for each in inputs.values())
+    require(part.find("ph") is None, "a mesh has polygons with holes")
+    # Several inputs may have one semantic, as sets of texture coordinates do.
+    wide = 1 + max(int(number(each.get("offset", "0"))) for each in part.findall("input"))
     vertices = _target(ids, attribute(inputs.get("VERTEX"), "source"))
     position = next((each for each in vertices.findall("input") if each.get("semantic") == "POSITION"), None)
-    array = _target(ids, attribute(position, "source")).find("float_array")
+    source = _target(ids, attribute(position, "source"))
+    accessor, array = source.find("technique_common/accessor"), source.find("float_array")
+    require(accessor is None or accessor.get("stride", "3") == "3", "a mesh has corners of other than 3 numbers")
     words = str("" if array is None else array.text).split()
     corners = numbers(words, len(words) // 3 * 3).reshape(-1, 3)
     offset, rows = int(number(inputs["VERTEX"].get("offset", "0"))), []

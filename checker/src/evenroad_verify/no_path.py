@@ -145,7 +145,7 @@ def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
             slides, beyond = _slides(frames, inputs, terminals), np.ones(len(read.poses), bool)
             for rows in _some(inside) if read.poses else ():
                 places = Places(frames, cells.ranges, middles[rows], half[rows], len(terminals.joints))
-                beyond &= [are_beyond(pose, places, frames, place, columns, slides).all() for pose in read.poses]
+                beyond &= [are_beyond(pose, places, frames, columns, slides).all() for pose in read.poses]
             left[read.goals :] &= ~beyond
         demand(not left.any(), f"a goal is not shown to be out of reach: number {int(left.argmax())}")
     used = tuple(dict.fromkeys(terminals.joints[column] for columns, _ in read.parts for column in columns))
@@ -204,11 +204,11 @@ def _witnesses(
     read: NoPath, inputs: Inputs, bodies: list[Body], touching: set[frozenset[str]]
 ) -> tuple[list[tuple[Spot, tuple[int, Solid | Spot], float]], tuple[tuple[str, str], ...]]:
     """Return balls, solids and what to keep between them, and the names of bodies; Refused where a pair may touch."""
-    spots = []
+    spots, pieces = [], dict[int, list[tuple[Floats, bool]]]()
     for number, *centre, radius in read.balls.tolist():
         demand(number < len(bodies), "a ball is in an unknown body")
         body = bodies[int(number)]
-        demand(is_ball_inside(body, np.array(centre), radius), f"a ball is not inside of {body.name}")
+        demand(is_ball_inside(body, np.array(centre), radius, pieces), f"a ball is not inside of {body.name}")
         spots.append(Spot(body.frame, np.array(centre), radius))
     solids: list[tuple[int, Solid | Spot | None]] = [
         (i, solid_of(shape)) for i, body in enumerate(bodies) for shape in body.shapes if not shape.surface
@@ -240,6 +240,7 @@ def _require_precise(frames: Frames, inputs: Inputs, bodies: list[Body], cells: 
     terminals = np.zeros((1, 3, 1 + int(frames.column.max())))
     terminals[0, 0, cells.ranges.columns], terminals[0, 1, cells.ranges.columns] = cells.ranges.low, cells.ranges.high
     _, out = frames.far(terminals)
-    reach = max(out.max() + np.linalg.norm(shape.points, axis=1).max() for body in bodies for shape in body.shapes)
+    far = (np.linalg.norm(shape.points, axis=1).max() for body in bodies for shape in body.shapes)
+    reach = out.max() + max(far, default=0.0)
     largest = 1.0 + np.abs(terminals).max() * max(1.0, float(np.abs(frames.factor).max()))
     demand(ROUNDING * inputs.robot.depth * reach * largest < LEAST, "the robot is too large for double precision")

@@ -64,14 +64,17 @@ class Body:
     is_obstacle: bool
 
 
-def is_ball_inside(body: Body, centre: Floats, radius: float) -> bool:
-    """Return whether a ball is inside of one of a body's shapes, or inside of a closed piece of its surfaces."""
+def is_ball_inside(body: Body, centre: Floats, radius: float, pieces: dict[int, list[tuple[Floats, bool]]]) -> bool:
+    """Return whether a ball is inside of one of a body's shapes, or inside of a closed piece of its surfaces.
+
+    `pieces` keeps those that are known.
+    """
     for shape in body.shapes:
         solid = solid_of(shape)
         if solid is not None and solid.distances(centre[None])[0] <= -radius - LEAST:
             return True
         within = (shape.points.min(0) < centre - radius).all() and (shape.points.max(0) > centre + radius).all()
-        for triangles, closed in pieces_of(shape, {}) if within else []:
+        for triangles, closed in pieces_of(shape, pieces) if within else []:
             if closed and are_inside(centre[None], triangles)[0] and _nearest(triangles, centre) >= radius + LEAST:
                 return True
     return False

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evenroad_verify.claim import Places as Placement
 from evenroad_verify.errors import Bools, Floats, Ints, Pose, demand, number
 from evenroad_verify.frames import Frames
 from evenroad_verify.overlaps import LEAST, Places, between
@@ -46,15 +45,13 @@ def read_poses(said: dict[str, list[str]]) -> list[PoseGoal]:
     return goals
 
 
-def are_beyond(
-    goal: PoseGoal, places: Places, frames: Frames, placement: Placement, columns: Ints, slides: Floats
-) -> Bools:
+def are_beyond(goal: PoseGoal, places: Places, frames: Frames, columns: Ints, slides: Floats) -> Bools:
     """Return in which cells no posture reaches a goal, whatever other joints than the columns' do.
 
     `slides` are how far joints slide at most, 0 for those that turn.
     """
-    demand(goal.link in placement, f"the robot has no link {goal.link}")
-    frame, (rotation, shift) = placement[goal.link]
+    demand(goal.link in frames.place, f"the robot has no link {goal.link}")
+    frame, (rotation, shift) = frames.place[goal.link]
     chain = between(frames, 0, frame)
     free = [i for i, k in enumerate(chain) if frames.column[k] not in columns]
     known, rest = (chain[: free[0]], chain[free[0] :]) if free else (chain, [])

@@ -96,7 +96,9 @@ def _named(value: object) -> Iterator[tuple[str, dict[str, object]]]:
         if "shape" not in entry and len(short) == 1:
             inner, (key, *more) = entry.pop(short[0]), DIMENSIONS[short[0]]
             require(isinstance(inner, dict) or not more, f"{name} lacks its {', '.join(more)}")
-            entry = {"shape": short[0], **(inner if isinstance(inner, dict) else {key: inner}), **entry}
+            own = inner if isinstance(inner, dict) else {key: inner}
+            require(not own.keys() & {"shape", *entry}, f"{name} has a key twice")
+            entry = {"shape": short[0], **own, **entry}
         yield name, entry
 
 
@@ -117,7 +119,9 @@ def _obstacle(files: Files, path: Path, name: str, entry: dict[str, object]) -> 
         scale, file = entry.get("scale", "1"), path.parent / str(entry.get("file"))
         scales = numbers(scale if isinstance(scale, list) else [scale] * 3, 3)
         shapes = read_mesh(files.read(file), file.name, scales)
-        if entry.get("convex") == "true":
+        convex = entry.get("convex", "false")
+        require(convex in ("true", "false"), f"{name} has a convex that is not true or false")
+        if convex == "true":
             shapes = [hull(shapes)]
     elif kind == "cloud":
         shapes = [balls(files.read(path.parent / str(entry.get("file"))), number(entry.get("radius", "0.01")))]

@@ -87,13 +87,22 @@ def pieces_of(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list
             if (new == label).all():
                 break
             label = new
-        edges = np.sort(corner[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        edges = edges[edges[:, 0] != edges[:, 1]]
-        edge, count = np.unique(edges[:, 0] * len(label) + edges[:, 1], return_counts=True)
+        edge, count = _edges(corner, len(label))
+        if (count > 2).any():  # two triangles of the same corners would hide what is inside
+            corner = corner[np.sort(np.unique(np.sort(corner, axis=1), axis=0, return_index=True)[1])]
+            edge, count = _edges(corner, len(label))
         open_ones = set(label[edge[count % 2 == 1] // len(label)].tolist())
         of = label[corner[:, 0]]
         known[id(shape)] = [(shape.points[corner[of == each]], int(each) not in open_ones) for each in np.unique(of)]
     return known[id(shape)]
+
+
+def _edges(corner: Ints, points: int) -> tuple[Ints, Ints]:
+    """Return the edges of triangles, as one number each, and how many triangles have each."""
+    edges = np.sort(corner[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges = edges[edges[:, 0] != edges[:, 1]]
+    edge, count = np.unique(edges[:, 0] * points + edges[:, 1], return_counts=True)
+    return edge, count
 
 
 def _inside(points: Floats, triangles: Floats) -> bool:
