@@ -56,6 +56,7 @@ def test_trajectories_of_our_own_are_read_by_their_states(suffix, tmp_path):
         ("a.csv", "a,b\n1,2\n3\n", BrokenFile, "2 numbers in each line"),
         ("a.csv", "1,nan\n", BrokenFile, "waypoint 0 has none"),
         ("a.csv", "time\n1\n", BrokenFile, "names no joint"),
+        pytest.param("a.csv", "a," + 200_000 * "b" + "\n1,2\n", BrokenFile, "is not a table of text", id="wide"),
         ("a.yaml", "joint_names: [a]\npoints: [{positions: [1, 2]}]\n", BrokenFile, "1 joints for each point"),
         ("a.yaml", "joint_name: [a]\npoints: []\n", UnknownName, "joint_names"),
         ("a.yaml", "multi_dof_joint_trajectory: {}\njoint_trajectory: {}\n", UnknownName, "one value each"),

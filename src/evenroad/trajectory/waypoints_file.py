@@ -78,9 +78,9 @@ def _first_not_finite(positions: Floats) -> int:
 def _csv(file: Path) -> Waypoints:
     try:
         lines = [line for line in read_bytes(file).decode("utf-8-sig").splitlines() if line.strip()]
-    except UnicodeDecodeError as error:
+        rows = list(_cells(lines))
+    except (UnicodeDecodeError, csv.Error) as error:
         raise not_a("a table of text", file, str(error)) from error
-    rows = list(_cells(lines))
     if not rows:
         raise BrokenFile(f"{file} is empty: a path has one waypoint or more")
     named = not all(map(_is_number, rows[0]))
