@@ -13,6 +13,8 @@ from evenroad.constraints.constrained_world import kept_world
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import read_inputs
+from evenroad_verify.command import verify
+from evenroad_verify.errors import Refused
 from tests.certificates.written import accepts, box_reach, joined, parts_of
 from tests.robots.oracle import link_poses
 
@@ -81,6 +83,17 @@ def test_a_tighter_limit_than_what_is_kept_is_refused(kept):
     most = float(_off(world.keeps[0], _between(path)).max())
     assert not accepts(_with_limit(data, most - 1e-6), inputs_in(data))
     assert accepts(_with_limit(data, 1.5 * world.keeps[0].within), inputs_in(data))
+
+
+def test_an_axis_without_a_length_and_a_point_too_far_for_double_precision_are_refused(kept):
+    _, _, data = kept
+    lines, *_ = parts_of(data)
+    (line,) = [line for line in lines if line.startswith(("axis ", "point "))]
+    kind, _, _, _, _, *rest = line.split(" ")
+    begins, wanted = {"axis": ("axis 1 0 0 0", "no length"), "point": ("point 9e8 9e8 0 0", "double precision")}[kind]
+    forged = data.replace(line.encode(), " ".join((begins, *rest)).encode())
+    with pytest.raises(Refused, match=wanted):
+        verify(forged, inputs_in(data))
 
 
 def test_an_answer_to_a_constraint_is_that_it_is_kept(kept):

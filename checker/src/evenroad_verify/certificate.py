@@ -188,7 +188,9 @@ def _rows(said: dict[str, list[str]], key: str, count: int) -> Iterator[tuple[st
 
 
 def _unit(vector: Floats) -> Floats:
-    return np.asarray(vector / np.linalg.norm(vector))
+    length = float(np.linalg.norm(vector))
+    demand(length > 1e-6, "an axis has no length")
+    return np.asarray(vector / length)
 
 
 def _named(lines: list[str]) -> dict[str, float]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from evenroad_verify.certificate import Certificate, read_certificate
 from evenroad_verify.claim import Claim, Inputs, claim_of, read_inputs
-from evenroad_verify.errors import BadInput, Refused, demand
+from evenroad_verify.errors import BadInput, Floats, Refused, demand
 from evenroad_verify.no_path import MAGIC as OF_NO_PATH
 from evenroad_verify.no_path import Shown, read_no_path, verify_no_path
 from evenroad_verify.paths import require_same_path
@@ -104,6 +104,10 @@ def _kept(read: Certificate) -> str:
     return kept + "".join(f", {link} {metres:g} m more" for link, metres in read.padding.items())
 
 
+def _row(values: Floats) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in values) + ")"
+
+
 def _lines(proved: Proved) -> list[str]:
     """Return what is printed of an accepted certificate."""
     read, claim = proved.certificate, proved.claim
@@ -113,10 +117,12 @@ def _lines(proved: Proved) -> list[str]:
     for name, first, last in zip(read.joints, read.curves[0, 0], read.curves[-1, 2], strict=True):
         lines.append(f"  {name}: from {first:.6g} to {last:.6g}")
     lines.append(f"  smallest gap of a step of the proof: {proved.least:.3g} m")
-    lines += [f"  an axis of {kept.link} stays within {kept.within:g} rad of its direction" for kept in read.axes]
-    lines += [
-        f"  a point of {kept.link} stays within {kept.within:g} m of its line, plane or box" for kept in read.points
-    ]
+    for axis in read.axes:
+        near = f"{axis.within:g} rad of {_row(axis.direction)}"
+        lines.append(f"  the axis {_row(axis.axis)} of {axis.link} is within {near}")
+    for point in read.points:
+        box = f"the box {_row(point.low)} to {_row(point.high)}, turned by the quaternion {_row(point.xyzw)}"
+        lines.append(f"  the point {_row(point.point)} of {point.link} is within {point.within:g} m of {box}")
     if read.tolerance:
         lines.append(f"  every joint may be {read.tolerance:g} off the curves")
     lines.append(f"pairs proved apart ({len(claim.pairs)}):")

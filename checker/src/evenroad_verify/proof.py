@@ -33,8 +33,11 @@ def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, In
     demand(int((answers > CENTRES).sum()) == len(certificate.directions), "directions are missing or left over")
     _, out = claim.frames.far(certificate.curves, certificate.tolerance)
     reach = (np.array(claim.nodes.reach) + out[np.array(claim.nodes.frame)])[tasks[:, FIRST : SECOND + 1]]
+    places = [(claim.frames.place[point.link], point.point) for point in certificate.points]
+    arms = [out[frame] + np.linalg.norm(turn @ point + shift) for (frame, (turn, shift)), point in places]
+    farthest = max(reach.max(initial=0.0), *arms, 0.0)
     largest = 1.0 + np.abs(certificate.curves).max() * max(1.0, float(np.abs(claim.frames.factor).max()))
-    demand(ROUNDING * depth * reach.max(initial=0.0) * largest < LEAST, "the robot is too large for double precision")
+    demand(ROUNDING * depth * farthest * largest < LEAST, "the robot is too large for double precision")
     directions = np.concatenate([certificate.directions, np.zeros((1, 3))])  # of those without one any will do
     keep, least = np.array([pair.keep for pair in claim.pairs]), np.inf
     motions = Motions(claim, certificate)

@@ -306,9 +306,9 @@ class PlanArm(PlanOptions, RobotOptions):
     clearance: float = 0.0
     """Distance to keep from all obstacles, 0 to 1, in metres; not from the arm itself."""
     certificate: Path | None = None
-    """Write a certificate here: a proof that the path is free, or that there is none, which evenroad-verify checks."""
+    """Write a proof of the answer here, which evenroad-verify checks."""
     embed: bool = False
-    """The certificate carries robot and scene, too; else it does only where a checker does not read their format."""
+    """The certificate carries robot and scene, too, not only what a checker cannot read."""
     trajectory: Repeatable[tuple[Path, ...]] = ()
     """Write a trajectory: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a bag), .script (URScript,
     by the clock) or .movej.script (waypoint by waypoint).  You can give several."""

@@ -25,7 +25,6 @@ from evenroad.cli.plan_parts import (
 from evenroad.cli.robot import bodiless_rows, decided_by, padding_row
 from evenroad.cli.trajectory import limits_of_tip, require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.infeasibility.proof import PROVED
 from evenroad.io import plan_record
 from evenroad.loading.find import find_robot
 from evenroad.planning.problem import Problem, Wanted
@@ -102,12 +101,15 @@ def plan_arm(plan: PlanArm) -> int:
 
 def _certified(plan: PlanArm, result: PlanResult, states: Floats | None) -> list[tuple[str, str]]:
     """Write the certificate of a path, or of a trajectory's states, or that there is no path; return its row."""
-    apart = result.message.startswith(PROVED)
-    if plan.certificate is None or not (result.solved or apart):
+    if plan.certificate is None:
         return []
     # Imported late: most plans are written without one.
     from evenroad.certificates.certify import certify
     from evenroad.certificates.no_path import certify_no_path
+    from evenroad.infeasibility.proof import PROVED
+
+    if not (result.solved or result.message.startswith(PROVED)):
+        return []
 
     sources = plan.sources(plan.robot, plan.world, plan.embed)
     if result.path is not None:

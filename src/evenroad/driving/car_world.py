@@ -141,7 +141,7 @@ class CarWorld(OneOrMany):
         Returns
         -------
         ndarray, shape (n,)
-            The footprint's own: the clearance of the world is part of it.
+            Distances of the bare footprint: the clearance of the world is not taken off.
         """
         return self._bare.gaps(as_batch("q", q, 3))
 
