@@ -165,7 +165,6 @@ CALLS = {
 }  # fmt: skip
 
 NOT_YET: dict[str, str] = {
-    "map other robots": "GridMap.world() got an unexpected keyword argument 'footprint'",
     "arm plan to a pose": "the pose is in the box of this scene: all 8 postures touch it, status goal_invalid",
 }
 """Name of a call -> why it does not work yet."""

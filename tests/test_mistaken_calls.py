@@ -45,7 +45,7 @@ CALLS = {
     "gridmap.world()": "radius",
     "gridmap.world('0.2')": "radius",
     "gridmap.world(raduis=0.2)": "did you mean 'radius'?",
-    "gridmap.world(footprint=[(-1, 0), (1, 0), (0, 1)])": "radius",
+    "gridmap.world(footprint=[(-1, 0), (1, 0)])": "three corners",
     "disk.valid('start')": "finite numbers",
     "disk.valid(None)": "q must",
     "disk.valid([0.1])": "(n, 2)",

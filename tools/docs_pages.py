@@ -47,11 +47,12 @@ REFERENCE = {
         ),
     ),
     "qmc": ("Engines for SciPy", ("evenroad.qmc",)),
-    "worlds": ("Spaces and worlds", ("evenroad.space", "evenroad.world", "evenroad.testing")),
+    "worlds": ("Spaces and worlds", ("evenroad.space", "evenroad.world", "evenroad.driving", "evenroad.testing")),
     "arms": ("Arms", ("evenroad.robot",)),
     "tasks": ("Constraints and tasks", ("evenroad.constraints", "evenroad.task")),
     "geometry": ("Geometry", ("evenroad.geometry",)),
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
+    "certificates": ("Certificates", ("evenroad.certificates.certify_path",)),
     "pictures": ("Pictures", ("evenroad.viz.show", "evenroad.viz.plan", "evenroad.viz.arm")),
     "mazes": (
         "Maps and mazes",
@@ -85,7 +86,7 @@ MODULES = {
 }
 """Page -> modules of the root that it holds."""
 
-FOR_THE_COMMAND: dict[str, set[str]] = {}
+FOR_THE_COMMAND = {"evenroad.certificates.certify_path": {"check_path", "path_of", "with_held"}}
 """Module -> names that it offers to evenroad's own command and benchmarks, not to users."""
 
 NOT_NEEDED = ["ompl", "klampt", "mujoco"]

@@ -208,7 +208,7 @@ BAD = [
     ({"time": "soon"}, "--time must be a number, got 'soon'"),
     ({"n": -5}, "n must be an integer >= 1, got -5"),
     ({"n": 0}, "n must be an integer >= 1, got 0"),
-    ({"robot_radius": 1}, "exactly one of them, not both"),
+    ({"robot_radius": 1}, "exactly one of them, not --robot-radius and --robot"),
     ({"out": "no/where"}, "does not exist"),
 ]
 
@@ -231,7 +231,7 @@ ON_A_MAP = ("plan", "a.png", "--robot-radius", 1, "--start", 1, 1, "--goal", 2, 
     ((*arm_arguments(), "--improve", "-n", 64), "--improve goes without points"),
     (
         ("plan", "box-reach.yaml", "--start", "home", "--goal", "inside"),
-        "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not neither",
+        "give --robot-radius (a disk), --footprint (a car) or --robot (an arm), exactly one of them, not none",
     ),
     (
         ("plan", "desk.yaml", *ON_A_MAP[2:]),
@@ -239,8 +239,9 @@ ON_A_MAP = ("plan", "a.png", "--robot-radius", 1, "--start", 1, 1, "--goal", 2, 
     ),
     *(
         ((*ON_A_MAP, *option), f"{option[0]} goes with --robot only")
-        for option in (("--deg",), ("--srdf", "a.srdf"), ("--group", "g"), ("--resolution", 0.1))
+        for option in (("--srdf", "a.srdf"), ("--group", "g"), ("--resolution", 0.1))
     ),
+    ((*ON_A_MAP, "--deg"), "--deg goes with --robot or --footprint only"),
     (("robot", "cycle.urdf"), "form a cycle"),
     (("robot", "arm.urdf", "--package", "parts"), "--package must be of the form NAME=FOLDER, got 'parts'"),
     (("robot", "arm.urdf", "--xacro", "=1"), "--xacro must be of the form NAME=VALUE, got '=1'"),

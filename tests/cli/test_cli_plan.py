@@ -261,7 +261,7 @@ BAD = [
     ({"out": "x" * 300}, "cannot write"),
     ({"out": "a" * 5000}, "too long"),
     ({"out": "map.txt/result"}, "map.txt"),
-    ({"out": "room", "map_path": "room.png"}, "overwrite the map"),
+    ({"out": "room", "map_path": "room.png"}, "overwrite the file room.png"),
 ]
 
 

@@ -377,9 +377,9 @@ def plan_type(words: Sequence[str]) -> type[PlanOptions]:
     known = {option: option_names(kind) for option, kind in _KINDS.items()}
     require_known_options("evenroad plan", words, set().union(*known.values()))
     if len(named) != 1:
-        text = "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not"
-        also = "; --footprint (a car) is the third" if "--footprint" in named else ""
-        raise InvalidValue(f"{text} {'both' if named else 'neither'}{also}; all options: evenroad plan --help")
+        text = "give --robot-radius (a disk), --footprint (a car) or --robot (an arm), exactly one of them"
+        given_now = " and ".join(named) or "none"
+        raise InvalidValue(f"{text}, not {given_now}; all options: evenroad plan --help")
     for option in sorted(given - known[named[0]]):
         needs = " or ".join(each for each, options in known.items() if option in options)
         raise InvalidValue(f"{option} goes with {needs} only")
