@@ -70,7 +70,7 @@ $(VENV)/.sanitized-kernel: $(KERNEL) | $(VENV)/.tools
 	@touch $@
 
 # Once for each state of the kernel: its tests where memory errors and undefined behaviour stop the program.
-$(VENV)/.sanitized: $(VENV)/.sanitized-kernel $(shell find tests/native -name '*.py') | $(VENV)/.dev
+$(VENV)/.sanitized: $(VENV)/.sanitized-kernel $(shell find tests/native -name '*.py') | $(VENV)/.dev $(VENV)/.native
 	$(BIN)/python tools/build_backend.py --sanitized
 	@touch $@
 
