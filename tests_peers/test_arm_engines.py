@@ -170,7 +170,7 @@ def test_what_is_free_for_the_fitted_capsules_is_free_for_the_meshes(engine, for
     q = world.space.from_cube(np.random.default_rng(7).random((4_000, world.space.dim)))
     ours, theirs = world.valid(q), exact.valid(q)
     assert theirs[ours].all()
-    assert theirs.sum() > 1.02 * ours.sum() > 100, "meshes leave more room than capsules do"
+    assert ours.sum() > 0.98 * theirs.sum() > 100, "hulls decide where capsules touch: little is lost"
 
 
 @engines
