@@ -45,6 +45,7 @@ def test_a_text_is_read_as_pyyaml_reads_it(name):
     [
         *("a: 1\na: 2", "{a: 1, a: 2}", "a: &x 1\nb: *x", "a: !!float 1", "a: |\n  text", "a: >\n  text", "\ta: 1"),
         *("a: [1, 2", "a: {b: }}", "a: 1\n   b: 2", "? a\n: b", "<<: {a: 1}\n- b", "[" * 100, "%YAML 1.2\n---\na: 1"),
+        "name: a\n---\nobstacles: {}",
     ],
 )
 def test_what_is_not_understood_is_bad_input(text, tmp_path):
@@ -83,6 +84,16 @@ def test_polygons_of_an_obj_are_fans():
 def test_a_broken_mesh_is_bad_input(data):
     with pytest.raises(BadInput):
         read_mesh(data, "broken.obj", np.ones(3))
+
+
+def test_a_corner_0_of_an_obj_and_two_corners_in_a_line_of_an_stl_are_bad_input():
+    with pytest.raises(BadInput, match="counted from 1"):
+        read_mesh(b"v 0 0 0\nv 1 0 0\nf 0 1 2\nv 1 1 0\n", "zero.obj", np.ones(3))
+    facet = b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    text = b"solid vertex\n" + facet + b" ".join(facet.split()) + b"\nendsolid\n"
+    with pytest.raises(BadInput, match="one line"):
+        read_mesh(text, "lines.stl", np.ones(3))
+    assert len(read_mesh(b"solid vertex\n" + facet + b"endsolid\n", "one.stl", np.ones(3))[0].corners) == 1
 
 
 def test_the_checker_imports_numpy_alone():

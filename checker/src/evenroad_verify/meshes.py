@@ -34,7 +34,9 @@ def read_mesh(data: bytes, name: str, scale: Floats) -> list[Shape]:
 
 
 def _text_stl(lines: list[list[str]]) -> Floats:
-    corners = [numbers(line[1:], 3) for line in lines if line[:1] == ["vertex"]]
+    inside = [line for line in lines if line[:1] not in (["solid"], ["endsolid"])]
+    require(all("vertex" not in line[1:] for line in inside), "an STL has more than a corner in one line")
+    corners = [numbers(line[1:], 3) for line in inside if line[:1] == ["vertex"]]
     require(len(corners) % 3 == 0, "an STL has a triangle without three corners")
     return np.array(corners, float).reshape(-1, 3, 3)
 
@@ -46,6 +48,7 @@ def _obj(lines: list[list[str]]) -> Floats:
         count += line[:1] == ["v"]
         if line[:1] == ["f"]:
             at = [int(number(each.split("/")[0])) for each in line[1:]]
+            require(0 not in at, "an OBJ has a corner 0: they are counted from 1")
             faces.append([each - 1 if each > 0 else count + each for each in at])
     return corners[_fans(faces, len(corners))]
 

@@ -29,7 +29,9 @@ def parse_yaml(text: str) -> object:
         line = found.group(1).rstrip() if found else ""
         if lines and _is_open(lines[-1][1]):
             lines[-1] = (lines[-1][0], f"{lines[-1][1]} {line.strip()}")
-        elif line and line != "---":
+        elif line == "---":
+            require(not lines, "the scene has more than one document")
+        elif line:
             lines.append((len(line) - len(line.lstrip()), line.strip()))
     lines.reverse()
     try:
