@@ -59,8 +59,12 @@ static void read_ascii_stl(Mesh* mesh, char* text, const char* path) {
   Vector corners[3] = {{0, 0, 0}};
   size_t count = 0;
   while (*text) {
-    char* numbers = after(next_line(&text), "vertex");
-    if (!numbers) continue;
+    char *line = next_line(&text), *numbers = after(line, "vertex");
+    if (!numbers) {
+      bool name = after(line, "solid") || after(line, "endsolid");
+      if (!name && strstr(line, " vertex")) fail(BAD_INPUT, "%s: more than a corner in one line", path);
+      continue;
+    }
     corners[count++ % 3] = vector_of(numbers, path);
     if (count % 3 == 0) add_triangle(mesh, corners[0], corners[1], corners[2]);
   }

@@ -117,6 +117,14 @@ def test_closed_meshes_are_solid(suffix, radius, many, tmp_path):
     assert many.accepts(certificate) == accepts(certificate, inputs_of(sources)) == (radius == 0.05)
 
 
+@pytest.mark.parametrize("line", ["outer loop vertex 0 0 0", "vertex 0 0 0 vertex 1 0 0"])
+def test_corners_that_share_a_line_of_an_stl_are_bad_input(line, many, tmp_path):
+    facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    (tmp_path / "one.stl").write_text(f"solid vertex\n{facet}{line}\nendsolid\n")
+    sources = sources_in(tmp_path, "obstacles: {a: {shape: mesh, file: one.stl}}\n")
+    assert many.read(sources.robot, sources.scene) == BAD_INPUT
+
+
 TEXTS = {
     "blocks": "obstacles: # x\n  a b:\n    shape: box\n    size:\n    - 1\n    - 2\n    - 3\n    xyz: [0, 0,\n  -9]\n",
     "quotes": "'name': 'it''s # none'\nobstacles: {\"a\": {shape: sphere, radius: 1e-2, xyz: [+9., .5, 0]}}\n",
@@ -129,6 +137,7 @@ BROKEN = (
     *("<<: {name: 1}\n- b", "[" * 100, "%YAML 1.2\n---\nname: 1", "obstacles: {a: {shape: box, size: [1, 1]}}"),
     *("other: 1", "obstacles: {a: {shape: sphere, radius: nan}}", "obstacles: {a: {shape: sphere, radius: -1}}"),
     *("obstacles: {a: {shape: sphere, radius: 0x1}}", "allowed: {a: [b]}", "obstacles: [[1, 2]]", "name: 'a", "[1,"),
+    "name: a\n---\nobstacles: {}",
 )
 
 
