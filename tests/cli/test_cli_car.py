@@ -36,6 +36,17 @@ def test_a_car_is_driven_as_the_options_say(run, more):
 
 
 @pytest.mark.usefixtures("in_an_empty_folder")
+def test_a_footprint_may_be_written_as_in_python(run):
+    import evenroad as er
+
+    words = (*PLAN[:3], "((-.45, -.31), (.45, -.31), (.45, .31), (-.45, .31))", *PLAN[4:], "--goal", "1", "2.6", "80")
+    code, _, err = run(*words, "--no-picture")
+    assert (code, err) == (0, "")
+    _, query = er.io.load_plan("office.json")
+    assert query["footprint"] == [[[-0.45, -0.31], [0.45, -0.31], [0.45, 0.31], [-0.45, 0.31]]]
+
+
+@pytest.mark.usefixtures("in_an_empty_folder")
 @pytest.mark.parametrize(
     ("words", "says"),
     [

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
+from ast import literal_eval
 from pathlib import Path
 
 import numpy as np
@@ -72,10 +72,11 @@ def plan_car(plan: PlanCar) -> int:
 def _footprint(text: str) -> FootprintLike:
     """Return the corners that a text such as "[[0, 0], [1, 0], [1, 1]]" lists."""
     try:
-        corners: FootprintLike | None = json.loads(text) if len(text) <= LARGEST_TEXT else None
-    except (ValueError, RecursionError):
+        # Only numbers and brackets are read; JSON would refuse ".3" and brackets of Python.
+        corners: FootprintLike | None = literal_eval(text.strip()) if len(text) <= LARGEST_TEXT else None
+    except (ValueError, TypeError, SyntaxError, RecursionError, MemoryError):
         corners = None
-    if not isinstance(corners, list):
+    if not isinstance(corners, list | tuple):
         raise InvalidValue(f'--footprint must be corners as "[[x, y], [x, y], ...]", got {shown(text)}')
     return corners
 
