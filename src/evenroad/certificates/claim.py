@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evenroad._arrays import Floats
 from evenroad._native.certificates import JointTables
 from evenroad.certificates.elements import Elements, elements_of
 from evenroad.certificates.kept import Axis, Point
@@ -54,6 +55,20 @@ class Tree:
         rules = [(factor, offset) for *_, factor, offset in self.moved]
         rows = np.array(links, dtype=np.int64).reshape(-1, 3), np.array(poses, dtype=float).reshape(-1, 15)
         return JointTables(*rows, np.array(rules, dtype=float).reshape(-1, 2))
+
+    def moves_by(self, k: int, frames: Floats, half: Floats, points: Floats, before: Floats) -> Floats:
+        """Return how far joint k moves points, (n, 3), at most, whose own movement is `before`, (n,) [m].
+
+        Its value changes from that of `frames`, the poses (n, 4, 4) of its frame, by what `half`, (n,), of its column
+        says.
+        """
+        _, joint, _, _, factor, _ = self.moved[k]
+        turn = half * abs(factor)
+        if joint.kind == "prismatic":
+            return turn
+        axis = frames[:, :3, :3] @ np.array(joint.axis)
+        lever: Floats = before + np.linalg.norm(np.cross(axis, points - frames[:, :3, 3]), axis=1)
+        return turn * lever
 
 
 @dataclass(frozen=True)

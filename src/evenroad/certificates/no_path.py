@@ -11,6 +11,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.certificates.cells import Ranges, separate, tree_of
 from evenroad.certificates.certify import PathLike, Sources, claimed_by
+from evenroad.certificates.plain import ENDLESS
 from evenroad.certificates.pruned import LEFT_OPEN, pruned
 from evenroad.certificates.targets import Target, target_of
 from evenroad.certificates.witnesses import Witnesses, witnesses_of
@@ -25,10 +26,8 @@ FIRST = 3
 """Number of first joints of which cells are tried."""
 CELLS = {1: 4_000, 2: 60_000, 3: 150_000}
 """Number of joints -> largest number of cells."""
-BEYOND = 1e-5
+PAST_LIMITS = 1e-5
 """By how much cells reach beyond limits [rad or m]."""
-_ANY = 1000.0
-"""A range of more than this is none [rad or m]."""
 
 
 @dataclass(frozen=True)
@@ -127,8 +126,8 @@ def _range(urdf: RobotDescription, scene: Scene, name: str) -> tuple[float, floa
     """Return how far a joint may go as a checker has it, -inf and inf without limits."""
     joint, low, high = next(joint for joint in urdf.joints if joint.name == name), -np.inf, np.inf
     for least, most in (joint.stops, scene.limits.get(name, (low, high))):
-        if most - least <= _ANY:
-            low, high = max(low, least - BEYOND), min(high, most + BEYOND)
+        if most - least <= ENDLESS:
+            low, high = max(low, least - PAST_LIMITS), min(high, most + PAST_LIMITS)
     return low, high
 
 

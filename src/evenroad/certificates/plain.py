@@ -22,7 +22,7 @@ from evenroad.robots.held import HeldObject
 from evenroad.robots.robot import Robot
 from evenroad.scenes.scene import Scene
 
-_ENDLESS = 1000.0
+ENDLESS = 1000.0
 """A range of more than this is none [rad or m]."""
 
 
@@ -32,7 +32,7 @@ def claimed_scene(world: ArmWorld) -> Scene:
     held = {each.name: each for each in world.scene.attached}
     attached = tuple(held.get(name) or _held(robot, name) for name in robot.holds)
     ranges = {joint.name: (joint.lower, joint.upper) for joint in robot.joints if joint.name in robot.group}
-    limits = {name: (low, high) for name, (low, high) in ranges.items() if high - low <= _ENDLESS}
+    limits = {name: (low, high) for name, (low, high) in ranges.items() if high - low <= ENDLESS}
     return replace(world.scene, setup=replace(setup, attached=attached, limits=limits))
 
 

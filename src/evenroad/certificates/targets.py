@@ -74,12 +74,7 @@ def status_of(target: Target, tree: Tree, frames: Floats, half: Floats) -> Ints:
     points = at[:, :3, :3] @ target.local + at[:, :3, 3]
     moved = np.zeros(len(frames))
     for k in reversed(target.known):
-        _, joint, _, column, factor, _ = tree.moved[k]
-        turn, lever = half[:, column] * abs(factor), np.ones(len(frames))
-        if joint.kind != "prismatic":
-            axis = frames[:, k + 1, :3, :3] @ np.array(joint.axis)
-            lever = moved + np.linalg.norm(np.cross(axis, points - frames[:, k + 1, :3, 3]), axis=1)
-        moved += turn * lever
+        moved += tree.moves_by(k, frames[:, k + 1], half[:, tree.moved[k][3]], points, moved)
     away = np.linalg.norm(points - target.point, axis=1)
     beyond = (away - moved > target.most + _SPARE) | (away + moved < target.least - _SPARE)
     within = (away <= target.most) & (away >= target.least)

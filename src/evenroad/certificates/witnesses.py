@@ -257,7 +257,7 @@ def depths(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair:
 
 
 def _depths(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair: Ints) -> tuple[Floats, Floats]:
-    pairs, solids = witnesses.pairs, witnesses.solids
+    pairs, solids, tree = witnesses.pairs, witnesses.solids, witnesses.tree
     ball, solid = pairs.ball[pair], pairs.solid[pair]
     at = frames[cell, solids.frame[ball]]
     points = np.einsum("nij,nj->ni", at[:, :3, :3], solids.middle[ball]) + at[:, :3, 3]
@@ -265,17 +265,12 @@ def _depths(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair
     local = np.einsum("nji,nj->ni", other[:, :3, :3], points - other[:, :3, 3])
     deep = solids.radius[ball] + pairs.keep[pair] - solids.distances(solid, local)
     far = np.zeros(len(cell))
-    joints = range(len(witnesses.tree.moved))
+    joints = range(len(tree.moved))
     for moves, order in ((pairs.up, joints[::-1]), (pairs.down, joints)):
         for k in order:
             rows = np.flatnonzero(moves[pair, k])
             if not len(rows):
                 continue
-            _, joint, _, column, factor, _ = witnesses.tree.moved[k]
-            turn, lever = half[cell[rows], column] * abs(factor), np.ones(len(rows))
-            if joint.kind != "prismatic":
-                frame = frames[cell[rows], k + 1]
-                axis = frame[:, :3, :3] @ np.array(joint.axis)
-                lever = far[rows] + np.linalg.norm(np.cross(axis, points[rows] - frame[:, :3, 3]), axis=1)
-            far[rows] += turn * lever
+            column, own = tree.moved[k][3], cell[rows]
+            far[rows] += tree.moves_by(k, frames[own, k + 1], half[own, column], points[rows], far[rows])
     return deep, far

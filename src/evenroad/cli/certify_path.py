@@ -94,5 +94,5 @@ def _where(check: PathCheck) -> list[tuple[str, str]]:
         return []
     waypoint, share = check.touch.free_until
     state = ", ".join(f"{value:.8g}" for value in np.array(check.touch.configuration).tolist())
-    before = f"share {share:.7f} of the motion after waypoint {waypoint}" if waypoint + share else "nowhere"
-    return [("proved free", f"up to {before}" if waypoint + share else before), ("state", state)]
+    before = f"up to share {share:.7f} of the motion after waypoint {waypoint}" if waypoint + share else "nowhere"
+    return [("proved free", before), ("state", state)]

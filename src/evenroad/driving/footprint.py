@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
+from evenroad._checks import counted
 from evenroad._native.drive import Footprint as NativeFootprint
 from evenroad.driving.convex_parts import convex_parts, turn
 from evenroad.errors import InvalidValue, shown
@@ -80,9 +81,7 @@ class Footprint:
         set_fields(self, outlines=outlines, parts=parts)
 
     def __repr__(self) -> str:
-        return f"Footprint({sum(map(len, self.outlines))} corners, {len(self.parts)} convex part(s))".replace(
-            "part(s)", "part" if len(self.parts) == 1 else "parts"
-        )
+        return f"Footprint({sum(map(len, self.outlines))} corners, {counted(len(self.parts), 'convex part')})"
 
     @property
     def reach(self) -> float:

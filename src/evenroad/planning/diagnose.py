@@ -84,6 +84,7 @@ def _what_touches(world: World, a: Floats, b: Floats) -> str:
         return ""
     met: Counter[str] = Counter()
     for first, last in zip(a, b, strict=True):
+        look_at_clock()
         shape = (len(_SHARES), len(first))
         states = world.space.interpolate(np.broadcast_to(first, shape), np.broadcast_to(last, shape), _SHARES)
         blocked = np.flatnonzero(~world.valid(states))

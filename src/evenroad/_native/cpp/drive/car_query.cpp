@@ -63,7 +63,9 @@ CarPath CarQuery::path(std::int64_t shortcuts) {
   path.shortcuts = shorten(checks_, steering_, start_, path.pieces, shortcuts);
   const OffTheClock proving;
   // Rounding gathers along a path: what is handed out is proved once more, as it is.
-  if (!are_free(checks_, steering_, start_, path.pieces)) path.pieces = path.raw;
+  if (are_free(checks_, steering_, start_, path.pieces)) return path;
+  path.pieces = path.raw;
+  if (!are_free(checks_, steering_, start_, path.raw)) path.pieces.clear();
   return path;
 }
 
