@@ -18,6 +18,8 @@ from evenroad_verify.scene import GROUND, Scene, read_scene
 from evenroad_verify.shapes import Shape
 
 Places: TypeAlias = dict[str, tuple[int, Pose]]
+ENDLESS = 1000.0
+"""A range of more than this is none [rad or m]."""
 BEYOND = 1e-5
 """By how much a waypoint may exceed a limit, as planners do by rounding [rad or m]."""
 
@@ -167,7 +169,7 @@ def require_limits(frames: Frames, scene: Scene, certificate: Certificate) -> No
         for low, high in (limits[name], scene.limits.get(name, (-np.inf, np.inf))):
             some = certificate.curves[:, :, column]
             within = some.min() >= low - BEYOND and some.max() <= high + BEYOND
-            demand(within or high - low > 1000.0, f"{name} leaves its limits")
+            demand(within or high - low > ENDLESS, f"{name} leaves its limits")
 
 
 def silent(

@@ -8,7 +8,7 @@ import numpy as np
 
 from evenroad_verify.cells import Cells, Ranges, cells_of, reached
 from evenroad_verify.certificate import FARTHEST, Certificate, count_of, head_of, read_file, tables_of
-from evenroad_verify.claim import BEYOND, Inputs, bodies_of, may_touch, require_limits, silent
+from evenroad_verify.claim import BEYOND, ENDLESS, Inputs, bodies_of, may_touch, require_limits, silent
 from evenroad_verify.errors import Bools, Floats, Ints, demand
 from evenroad_verify.frames import Frames, frames_of
 from evenroad_verify.overlaps import (
@@ -28,8 +28,6 @@ from evenroad_verify.robot import Joint
 
 MAGIC = b"evenroad certificate of no path 1\n"
 _AT_ONCE = 1 << 14
-_ANY = 1000.0
-"""A range of more than this is none [rad or m]."""
 
 
 @dataclass(frozen=True)
@@ -169,7 +167,7 @@ def _range(inputs: Inputs, joint: Joint) -> tuple[float, float]:
     """Return how far a joint may go, -inf and inf without limits."""
     low, high = -np.inf, np.inf
     for least, most in ((joint.lower, joint.upper), inputs.scene.limits.get(joint.name, (low, high))):
-        if most - least <= _ANY:
+        if most - least <= ENDLESS:
             low, high = max(low, least - BEYOND), min(high, most + BEYOND)
     return low, high
 
