@@ -62,7 +62,7 @@ def test_a_footprint_may_be_written_as_in_python(run):
             (*PLAN[:2], "--forward-only", "--robot-radius", "0.2", "--start", "1", "2", "--goal", "8", "3"),
             "--footprint",
         ),
-        ((*PLAN[:-1], "--goal", "8.5", "3", "0"), "radians, got 90"),
+        ((*PLAN[:-1], "--goal", "8.5", "3", "0"), "radians, got 90; --deg"),
     ],
 )
 def test_what_is_no_car_is_refused_in_one_line(run, words, says):

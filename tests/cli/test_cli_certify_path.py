@@ -38,5 +38,5 @@ def test_a_path_that_touches_says_which_bodies_and_where(run, paths):
 
 
 def test_wrong_input_is_refused_in_one_line(refuse, paths):
-    assert "none.csv" in refuse("certify-path", "none.csv", *WORDS)
+    assert "cannot read the path none.csv: No such file" in refuse("certify-path", "none.csv", *WORDS)
     assert "format of a path" in refuse("certify-path", "plan.doc", *WORDS)

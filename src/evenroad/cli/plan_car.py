@@ -12,6 +12,7 @@ from evenroad._time_limit import within
 from evenroad.cli import interrupted
 from evenroad.cli.plan import PlanCar
 from evenroad.cli.plan_parts import chosen_search, common_query, finish, made_of, output_files, solve_until_stopped
+from evenroad.driving.car_world import LARGEST_ANGLE
 from evenroad.driving.footprint import FootprintLike
 from evenroad.errors import InvalidValue, shown
 from evenroad.io import plan_record
@@ -90,4 +91,6 @@ def _pose(name: str, words: tuple[str, ...], in_degrees: bool) -> tuple[float, f
     if len(numbers) != 3 or not np.isfinite(numbers).all():
         raise InvalidValue(f"{name} must be three finite numbers x y angle, got {text!r}")
     x, y, angle = numbers
+    if not in_degrees and abs(angle) > LARGEST_ANGLE:
+        raise InvalidValue(f"the angle of the {name} must be at most 4 pi in radians, got {angle:g}; --deg for degrees")
     return x, y, math.radians(angle) if in_degrees else angle

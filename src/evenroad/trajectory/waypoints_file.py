@@ -12,7 +12,7 @@ import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_file, require_extra
-from evenroad._files import not_a, read_bytes, read_json_file
+from evenroad._files import not_a, read_json_file, read_known
 from evenroad._understood import Kind, require_understood
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, UnknownName, shown
@@ -77,7 +77,7 @@ def _first_not_finite(positions: Floats) -> int:
 
 def _csv(file: Path) -> Waypoints:
     try:
-        lines = [line for line in read_bytes(file).decode("utf-8-sig").splitlines() if line.strip()]
+        lines = [line for line in read_known(file, "path").decode("utf-8-sig").splitlines() if line.strip()]
         rows = list(_cells(lines))
     except (UnicodeDecodeError, csv.Error) as error:
         raise not_a("a table of text", file, str(error)) from error
