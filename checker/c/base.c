@@ -63,17 +63,20 @@ uint64_t little_endian(const uint8_t* data, int bytes) {
   return bits;
 }
 
-void read_numbers(const char* text, double* numbers, size_t count, const char* where) {
+bool are_numbers(const char* text, double* numbers, size_t count) {
   for (size_t i = 0; i < count; ++i) {
     text += strspn(text, " \t\r\n");
     size_t width = strspn(text, "0123456789+-.eE");
     char* end = NULL;
     numbers[i] = strtod(text, &end);
-    if (!width || end != text + width || !(fabs(numbers[i]) < 1e9))
-      fail(BAD_INPUT, "%s: no number: %.40s", where, text);
+    if (!width || end != text + width || !(fabs(numbers[i]) < 1e9)) return false;
     text = end;
   }
-  if (text[strspn(text, " \t\r\n")]) fail(BAD_INPUT, "%s: more than %zu numbers", where, count);
+  return !text[strspn(text, " \t\r\n")];
+}
+
+void read_numbers(const char* text, double* numbers, size_t count, const char* where) {
+  if (!are_numbers(text, numbers, count)) fail(BAD_INPUT, "%s: not %zu numbers: %.40s", where, count, text);
 }
 
 Pose composed(const Pose* outer, const Pose* inner) {

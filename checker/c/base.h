@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #define NONE SIZE_MAX
+#define PI 3.14159265358979323846
 
 /* How a check ends: the exit codes of the command. */
 enum { ACCEPTED = 0, REFUSED = 1, BAD_INPUT = 2 };
@@ -32,7 +33,8 @@ void release(void* since);
 char* copied(const char* text, size_t length);
 char* joined(const char* first, const char* second, const char* third);
 
-/* Exactly `count` decimal numbers below 1e9, apart by blanks; fails with `where` in its line. */
+/* Exactly `count` decimal numbers below 1e9, apart by blanks; without them the first is false, the second one fails. */
+bool are_numbers(const char* text, double* numbers, size_t count);
 void read_numbers(const char* text, double* numbers, size_t count, const char* where);
 
 /* A number of a few bytes, the lowest first. */

@@ -6,7 +6,21 @@
 static const char MAGIC[] = "evenroad certificate 1\n", OF_NO_PATH[] = "evenroad certificate of no path 1\n";
 
 /* Lines that may stand once: of all certificates, of paths, of no path, and those that may be left out. */
-enum { INPUTS, DEGREE, MOTIONS, ANSWERS, DIRECTIONS, GOALS, BALLS, WITNESSES, CLEARANCE, ROBOT, SCENE, ONCE };
+enum {
+  INPUTS,
+  DEGREE,
+  MOTIONS,
+  ANSWERS,
+  DIRECTIONS,
+  GOALS,
+  BALLS,
+  WITNESSES,
+  CLEARANCE,
+  TOLERANCE,
+  ROBOT,
+  SCENE,
+  ONCE
+};
 enum { LONGEST_HEADER = 1 << 16, MOST_MOTIONS = 1 << 20 };
 
 static const double FARTHEST = 1000;
@@ -19,9 +33,17 @@ static size_t count_of(const char* text) {
 
 static double number_of(const char* text) {
   double number = 0;
-  if (!*text || text[strspn(text, "0123456789+-.eE")]) fail(REFUSED, "no number: %.40s", text);
-  read_numbers(text, &number, 1, "the certificate");
+  if (text[strspn(text, "0123456789+-.eE")] || !are_numbers(text, &number, 1)) fail(REFUSED, "no number: %.40s", text);
   return number;
+}
+
+/* Cut a word off a text, which goes to what stands behind its blank. */
+static char* next_word(char** text) {
+  char *word = *text, *blank = strchr(word, ' ');
+  if (!blank) fail(REFUSED, "a line that is too short: %.60s", word);
+  *blank = 0;
+  *text = blank + 1;
+  return word;
 }
 
 static double length_of(const char* text) {
@@ -32,10 +54,44 @@ static double length_of(const char* text) {
 
 /* A value and a name behind it. */
 static Named named(char* text) {
-  char* blank = strchr(text, ' ');
-  if (!blank) fail(REFUSED, "no name: %.60s", text);
-  *blank = 0;
-  return (Named){blank + 1, number_of(text)};
+  double value = number_of(next_word(&text));
+  return (Named){text, value};
+}
+
+static Vector vector_of(char** text) {
+  double numbers[3];
+  for (int i = 0; i < 3; ++i) numbers[i] = number_of(next_word(text));
+  return (Vector){numbers[0], numbers[1], numbers[2]};
+}
+
+static Vector unit_of(char** text) {
+  Vector vector = vector_of(text);
+  if (!(length(vector) > 1e-6)) fail(REFUSED, "a vector without a length");
+  return scaled(1 / length(vector), vector);
+}
+
+/* Read a constraint, and put it behind all others of its kind. */
+static void add_kept(Certificate* to, char* text, bool is_axis) {
+  Kept kept = {.is_axis = is_axis, .within = number_of(next_word(&text)), .xyzw = {0, 0, 0, 1}, .box = identity()};
+  if (!(kept.within >= 0)) fail(REFUSED, "a constraint within less than 0");
+  if (is_axis) {
+    kept.part = unit_of(&text);
+    kept.low = kept.high = unit_of(&text);
+    kept.limit = 2 * sin(fmin(kept.within, PI) / 2);
+  } else {
+    kept.part = vector_of(&text);
+    double square = 0;
+    for (int i = 0; i < 4; ++i) kept.xyzw[i] = number_of(next_word(&text)), square += kept.xyzw[i] * kept.xyzw[i];
+    if (!(square > 1e-18)) fail(REFUSED, "a quaternion of length 0");
+    kept.box = pose_of_quaternion(kept.xyzw, (Vector){0, 0, 0});
+    kept.low = vector_of(&text);
+    kept.high = vector_of(&text);
+    kept.limit = kept.within;
+  }
+  kept.link = text;
+  size_t at = is_axis ? to->axis_count++ : to->kept_count;
+  memmove(to->kept + at + 1, to->kept + at, (to->kept_count++ - at) * sizeof kept);
+  to->kept[at] = kept;
 }
 
 static void add_named(Named* list, size_t* count, Named one) {
@@ -45,8 +101,15 @@ static void add_named(Named* list, size_t* count, Named one) {
   list[(*count)++] = one;
 }
 
+/* The digest of a file of which others were made, or a dash. */
+static const char* origin_of(const char* text) {
+  bool digest = strlen(text) == 64 && strspn(text, "0123456789abcdef") == 64;
+  if (!digest && strcmp(text, "-") != 0) fail(REFUSED, "no digest: %.80s", text);
+  return text;
+}
+
 static void read_digest(Certificate* to, const char* text) {
-  if (strlen(text) != 64 || strspn(text, "0123456789abcdef") != 64) fail(REFUSED, "no digest: %.80s", text);
+  if (*origin_of(text) == '-') fail(REFUSED, "no digest");
   for (int i = 0; i < 32; ++i) {
     char two[3] = {text[2 * i], text[2 * i + 1], 0};
     to->digest[i] = (uint8_t)strtoul(two, NULL, 16);
@@ -70,8 +133,8 @@ static Tree tree_of(char* text) {
 
 /* Read one line; those that may stand once only are counted in `seen`. */
 static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
-  static const char* const once[ONCE] = {"inputs", "degree",    "motions",   "answers", "directions", "goals",
-                                         "balls",  "witnesses", "clearance", "robot",   "scene"};
+  static const char* const once[ONCE] = {"inputs", "degree",    "motions",   "answers",   "directions", "goals",
+                                         "balls",  "witnesses", "clearance", "tolerance", "robot",      "scene"};
   size_t* counts[ONCE] = {[DEGREE] = &to->degree,
                           [MOTIONS] = &to->motions,
                           [ANSWERS] = &to->answer_count,
@@ -79,10 +142,8 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
                           [GOALS] = &to->goals,
                           [BALLS] = &to->ball_count,
                           [WITNESSES] = &to->witness_count};
-  char* blank = strchr(line, ' ');
-  if (!blank) fail(REFUSED, "a line that is not known: %.60s", line);
-  *blank = 0;
-  char* value = blank + 1;
+  char* value = line;
+  next_word(&value);
   for (int i = 0; i < ONCE; ++i) {
     if (strcmp(line, once[i]) != 0) continue;
     if (seen[i]) fail(REFUSED, "said twice: %s", line);
@@ -90,8 +151,9 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
     if (counts[i]) *counts[i] = count_of(value);
     if (i == INPUTS) read_digest(to, value);
     if (i == CLEARANCE) to->clearance = length_of(value);
-    if (i == ROBOT) to->robot = value;
-    if (i == SCENE) to->scene = value;
+    if (i == TOLERANCE) to->tolerance = length_of(value);
+    if (i == ROBOT) to->robot = origin_of(value);
+    if (i == SCENE) to->scene = origin_of(value);
     return;
   }
   if (!strcmp(line, "joint")) {
@@ -99,6 +161,8 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
       if (!strcmp(to->joints[i], value)) fail(REFUSED, "joint %.60s is named twice", value);
     }
     to->joints[to->joint_count++] = value;
+  } else if (!to->of_no_path && (!strcmp(line, "axis") || !strcmp(line, "point"))) {
+    add_kept(to, value, *line == 'a');
   } else if (!strcmp(line, "cells") && to->of_no_path) {
     to->trees[to->tree_count++] = tree_of(value);
   } else if (!strcmp(line, "held")) {
@@ -119,6 +183,7 @@ static void require_counts(const Certificate* certificate, const bool seen[ONCE]
   }
   if (!certificate->joint_count) fail(REFUSED, "no joint is named");
   if (certificate->of_no_path) {
+    if (seen[TOLERANCE]) fail(REFUSED, "a tolerance of no path");
     if (!certificate->goals || !certificate->tree_count) fail(REFUSED, "no goal, or no cells");
   } else {
     if (certificate->degree != 1 && certificate->degree != 2) fail(REFUSED, "degree must be 1 or 2");
@@ -147,6 +212,7 @@ static void read_header(Certificate* to, char* text) {
   to->held = take(lines, sizeof *to->held);
   to->padding = take(lines, sizeof *to->padding);
   to->trees = take(lines, sizeof *to->trees);
+  to->kept = take(lines + 1, sizeof *to->kept);
   bool seen[ONCE] = {false};
   while (*text) {
     char* line = text;

@@ -10,6 +10,15 @@ typedef struct {
   double value;
 } Named;
 
+/* A constraint: a unit vector of a link, or a point, is within `limit` of a box. */
+typedef struct {
+  const char* link;
+  bool is_axis;
+  double within, xyzw[4], limit; /* as said, and as a distance */
+  Vector part, low, high;        /* of the link, and of the box: of an axis both are its direction */
+  Pose box;
+} Kept;
+
 /* Cells of some columns of the points, and an answer to each; of a certificate that there is no path. */
 typedef struct {
   size_t *columns, column_count, answer_count;
@@ -22,7 +31,9 @@ typedef struct {
   const char** joints;
   Named *held, *padding;
   size_t joint_count, held_count, padding_count;
-  double clearance;
+  Kept* kept; /* axes first */
+  size_t axis_count, kept_count;
+  double clearance, tolerance;
   size_t degree, motions, answer_count, direction_count, points;
   double* values; /* of a point, one for each joint */
   const uint8_t *answers, *directions, *carried;

@@ -164,7 +164,7 @@ static Pose step_of(const Reader* in, const Entry* child) {
     read_numbers(child->text, n, 4, in->path);
     Vector axis = {n[0], n[1], n[2]};
     if (!(length(axis) > 0)) fail(BAD_INPUT, "%s: a turn about nothing", in->path);
-    step = pose_of_turn(scaled(1 / length(axis), axis), n[3] * acos(-1) / 180);
+    step = pose_of_turn(scaled(1 / length(axis), axis), n[3] * PI / 180);
   } else if (!strcmp(child->key, "lookat") || !strcmp(child->key, "skew")) {
     fail(BAD_INPUT, "%s: <%s> is not read", in->path, child->key);
   }

@@ -42,7 +42,7 @@ static double largest_value(const Model* model, const Frame* frame) {
     double value = model->extremes[i * model->certificate->joint_count + frame->column];
     largest = fmax(largest, fabs(frame->multiplier * value + frame->offset));
   }
-  return largest;
+  return largest + fabs(frame->multiplier) * model->certificate->tolerance;
 }
 
 static Pose step_of(const Frame* frame, double value) {
@@ -50,12 +50,6 @@ static Pose step_of(const Frame* frame, double value) {
   if (frame->slides) step.at = scaled(value, frame->axis);
   return step;
 }
-
-/* A link on the way through the tree: its frame, and where it is there. */
-typedef struct {
-  size_t link, frame;
-  Pose pose;
-} Place;
 
 /* Add a body unless it has no shapes; `of` is a link, or an attached object. */
 static void add_body(Model* model, const Link* of, const Place* place, size_t attached) {
@@ -95,6 +89,7 @@ static void walk(Model* model) {
   Place* of_link = take(inputs->link_count + 1, sizeof *of_link);
   size_t waiting = 0, done = 0;
   model->order = take(inputs->link_count + 1, sizeof *model->order);
+  model->of_link = of_link;
   stack[waiting++] = (Place){inputs->root, 0, identity()};
   model->frame_count = 1;
   while (waiting) {
@@ -112,6 +107,12 @@ static void walk(Model* model) {
   for (size_t i = 0; i < inputs->attached_count; ++i) {
     add_body(model, inputs->attached + i, of_link + inputs->attached[i].link, i);
   }
+}
+
+const Place* place_of_link(const Model* model, const char* link) {
+  size_t number = link_named(model->inputs, link);
+  if (number == NONE) fail(REFUSED, "a constraint of no link: %.60s", link);
+  return model->of_link + number;
 }
 
 static void refuse_unknown_names(const Inputs* inputs, const Certificate* certificate) {
@@ -203,6 +204,11 @@ static void require_bounded(const Model* model) {
     double reach = chain[first->frame] + first->reach;
     if (model->pairs[i].b == NONE) robot = fmax(robot, reach);
     farthest = fmax(farthest, fmax(reach, chain[second->frame] + second->reach));
+  }
+  for (size_t i = 0; i < certificate->kept_count; ++i) {
+    const Place* place = place_of_link(model, certificate->kept[i].link);
+    Vector point = placed(&place->pose, certificate->kept[i].part);
+    if (!certificate->kept[i].is_axis) farthest = fmax(farthest, chain[place->frame] + length(point));
   }
   for (size_t i = 0; i < model->inputs->obstacle_count; ++i) {
     const Shape* shape = &model->inputs->obstacles[i].shape;

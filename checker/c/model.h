@@ -16,6 +16,12 @@ typedef struct {
   double length; /* from the parent's origin to the joint, and the largest slide */
 } Frame;
 
+/* Where a link is: its frame, and its pose there. */
+typedef struct {
+  size_t link, frame;
+  Pose pose;
+} Place;
+
 typedef struct {
   const char* name;
   size_t frame, link, attached; /* `attached` is NONE for a link */
@@ -43,15 +49,17 @@ typedef struct {
   Solid* obstacles;
   const double* extremes; /* of the joints, as rows like the points */
   size_t extreme_count;
-  size_t* order; /* of links, depth first */
-  size_t* group; /* of each body, the first body of its node against obstacles */
+  size_t* order;        /* of links, depth first */
+  const Place* of_link; /* for each link */
+  size_t* group;        /* of each body, the first body of its node against obstacles */
   size_t frame_count, body_count, pair_count;
 } Model;
 
-#define PI 3.14159265358979323846
-
 /* The range of a column in the URDF and the scene; false if it has none. */
 bool range_of(const Inputs* inputs, const Certificate* certificate, size_t column, double range[2]);
+
+/* Where the link of a constraint is; refuses a link that there is not. */
+const Place* place_of_link(const Model* model, const char* link);
 
 Model* model_of(const Inputs* inputs, const Certificate* certificate);
 

@@ -5,9 +5,9 @@ enum { HALVE_STRETCH, HALVE_FIRST, HALVE_SECOND, ALONG_CENTRES, ALONG_BY_BOXES, 
 
 static const double LEAST_GAP = 1e-9;
 
-/* Two nodes of a pair during a stretch of a motion: part `index` of 2^level equal ones. */
+/* Two nodes of a pair, or a constraint and no nodes, during part `index` of 2^level equal ones of a motion. */
 typedef struct {
-  size_t pair, motion;
+  size_t number, motion; /* of the pair or constraint */
   Node *first, *second;
   int level;
   uint64_t index;
@@ -16,8 +16,17 @@ typedef struct {
 /* How one node moves as long as the other's frame stands still. */
 typedef struct {
   Vector turn, slide; /* W and V of the page */
-  double strays;      /* its bound of the acceleration */
+  double strays, off; /* bounds of the acceleration, and of what the tolerance moves */
 } Motion;
+
+/* The tasks, which are as many as the answers, and how far they are answered. */
+typedef struct {
+  Model* model;
+  Task* tasks;
+  size_t done, waiting, directions;
+  Moved* moved;
+  double smallest;
+} Proof;
 
 void place_frame(const Model* model, size_t i, double value, Moved* moved) {
   const Frame* frame = model->frames + i;
@@ -63,26 +72,27 @@ size_t shared(const Model* model, size_t a, size_t b) {
   return a;
 }
 
-/* The motion of a node by the joints of its chain below the frame `from`. */
-static Motion motion_of(const Model* model, const Moved* moved, const Node* node, size_t from) {
-  Motion motion = {{0, 0, 0}, {0, 0, 0}, 0};
-  double above = 0, lever = node->reach;
-  for (size_t k = node->frame; k != from; k = model->frames[k].parent) {
+/* The motion of what reaches so far about a frame, or of a vector there, by the joints of its chain below `from`. */
+static Motion motion_of(const Model* model, const Moved* moved, size_t frame, size_t from, double reach, bool vector) {
+  Motion motion = {{0, 0, 0}, {0, 0, 0}, 0, 0};
+  double above = 0, lever = reach;
+  for (size_t k = frame; k != from; k = model->frames[k].parent) {
     if (!model->frames[k].slides) above += moved[k].fastest;
   }
-  for (size_t k = node->frame; k != from; k = model->frames[k].parent) {
+  for (size_t k = frame; k != from; k = model->frames[k].parent) {
+    const Frame* joint = model->frames + k;
     const Moved* at = moved + k;
-    bool slides = model->frames[k].slides;
-    double turns = slides ? 0 : at->fastest;
+    double turns = joint->slides ? 0 : at->fastest, far = joint->slides ? !vector : vector ? 1 : lever;
     above -= turns;
-    if (slides) {
+    if (joint->slides) {
       motion.slide = sum(motion.slide, scaled(at->rate, at->axis));
     } else {
       motion.turn = sum(motion.turn, scaled(at->rate, at->axis));
       motion.slide = sum(motion.slide, scaled(at->rate, cross(at->pose.at, at->axis)));
     }
-    motion.strays += (slides ? 1 : lever) * (at->fastest * (2 * above + turns) + fabs(at->change));
-    lever += model->frames[k].length;
+    motion.strays += far * (at->fastest * (2 * above + turns) + fabs(at->change));
+    motion.off += far * fabs(joint->multiplier) * model->certificate->tolerance;
+    lever += joint->length;
   }
   return motion;
 }
@@ -100,7 +110,8 @@ static double farthest(const Node* node, const Moved* moved, const Motion* motio
 static double gap_along(const Model* model, const Moved* moved, const Task* task, double half, Vector normal,
                         bool by_box) {
   size_t from = shared(model, task->first->frame, task->second->frame);
-  Motion first = motion_of(model, moved, task->first, from), second = motion_of(model, moved, task->second, from);
+  Motion first = motion_of(model, moved, task->first->frame, from, task->first->reach, false);
+  Motion second = motion_of(model, moved, task->second->frame, from, task->second->reach, false);
   Vector back = scaled(-1, normal);
   double least = INFINITY;
   for (int i = -1; i <= 1; i += 2) {
@@ -108,7 +119,8 @@ static double gap_along(const Model* model, const Moved* moved, const Task* task
     double low = -farthest(task->second, moved, &second, back, i * half, by_box);
     least = fmin(least, low - high);
   }
-  return least - half * half / 2 * (first.strays + second.strays) - model->pairs[task->pair].margin;
+  double lost = half * half / 2 * (first.strays + second.strays) + first.off + second.off;
+  return least - lost - model->pairs[task->number].margin;
 }
 
 static Vector between_centres(const Moved* moved, const Task* task) {
@@ -119,9 +131,30 @@ static Vector between_centres(const Moved* moved, const Task* task) {
   return scaled(1 / length(line), line);
 }
 
+/* How far a place is from the box of a constraint. */
+static double distance(const Kept* kept, Vector at) {
+  Vector seen = turned_in(&kept->box, at), below = difference(kept->low, seen), beyond = difference(seen, kept->high);
+  Vector off = {fmax(fmax(below.x, beyond.x), 0), fmax(fmax(below.y, beyond.y), 0), fmax(fmax(below.z, beyond.z), 0)};
+  return length(off);
+}
+
+/* By how much a constraint may be exceeded in a stretch. */
+static double excess(const Model* model, const Moved* moved, const Kept* kept, double half) {
+  const Place* place = place_of_link(model, kept->link);
+  const Pose* pose = &moved[place->frame].pose;
+  Vector part = kept->is_axis ? turned(&place->pose, kept->part) : placed(&place->pose, kept->part);
+  Vector at = kept->is_axis ? turned(pose, part) : placed(pose, part);
+  Motion motion = motion_of(model, moved, place->frame, 0, length(part), kept->is_axis);
+  Vector moves = cross(motion.turn, at);
+  if (!kept->is_axis) moves = sum(moves, motion.slide);
+  double worst = 0;
+  for (int i = -1; i <= 1; i += 2) worst = fmax(worst, distance(kept, sum(at, scaled(i * half, moves))));
+  return worst + half * half / 2 * motion.strays + motion.off - kept->limit;
+}
+
 static Node* half_or_refuse(Node* node, bool second) {
-  Node* half = half_of(node, second);
-  if (!half) fail(REFUSED, "a node of one element is halved");
+  Node* half = node ? half_of(node, second) : NULL;
+  if (!half) fail(REFUSED, "a node of one element is halved, or of a constraint");
   return half;
 }
 
@@ -141,40 +174,70 @@ static void halve(const Task* task, int answer, Task halves[2]) {
   }
 }
 
-double prove(Model* model) {
-  const Certificate* certificate = model->certificate;
-  size_t answers = certificate->answer_count, waiting = 0, next_direction = 0;
-  if (model->pair_count > answers / certificate->motions) fail(REFUSED, "tasks without an answer");
-  Task* tasks = take(answers, sizeof *tasks);
-  Moved* moved = take(model->frame_count, sizeof *moved);
-  double smallest = INFINITY;
-  for (size_t motion = 0; motion < certificate->motions; ++motion) {
-    for (size_t i = 0; i < model->pair_count; ++i) {
-      tasks[waiting++] =
-          (Task){.pair = i, .motion = motion, .first = model->pairs[i].first, .second = model->pairs[i].second};
-    }
-  }
-  for (size_t i = 0; i < waiting; ++i) {
-    const Task* task = tasks + i;
-    int answer = answer_at(certificate, i);
+/* Check a direction that separates the nodes of a task. */
+static void separate(Proof* proof, const Task* task, int answer, double half) {
+  const Certificate* certificate = proof->model->certificate;
+  bool given = answer != ALONG_CENTRES;
+  if (given && proof->directions == certificate->direction_count) fail(REFUSED, "a direction is missing");
+  Vector normal = given ? direction_at(certificate, proof->directions++) : between_centres(proof->moved, task);
+  double gap = gap_along(proof->model, proof->moved, task, half, normal, answer != ALONG_BY_CORNERS);
+  if (!(gap > LEAST_GAP)) fail(REFUSED, "task %zu: a direction that does not separate (%.3g m)", proof->done, gap);
+  proof->smallest = fmin(proof->smallest, gap);
+  Pair* pair = proof->model->pairs + task->number;
+  if (task->first == pair->first && task->second == pair->second) pair->apart = true;
+}
+
+/* Answer all tasks that wait, and those that they make. */
+static void answer_all(Proof* proof) {
+  const Certificate* certificate = proof->model->certificate;
+  for (; proof->done < proof->waiting; ++proof->done) {
+    const Task* task = proof->tasks + proof->done;
+    int answer = answer_at(certificate, proof->done);
     if (answer <= HALVE_SECOND) {
-      if (answers - waiting < 2) fail(REFUSED, "tasks without an answer");
-      halve(task, answer, tasks + waiting);
-      waiting += 2;
+      if (certificate->answer_count - proof->waiting < 2) fail(REFUSED, "tasks without an answer");
+      halve(task, answer, proof->tasks + proof->waiting);
+      proof->waiting += 2;
       continue;
     }
     double half = ldexp(0.5, -task->level);
-    place_frames(model, task->motion, ldexp((double)task->index + 0.5, -task->level), half, moved);
-    bool given = answer != ALONG_CENTRES;
-    if (given && next_direction == certificate->direction_count) fail(REFUSED, "a direction is missing");
-    Vector normal = given ? direction_at(certificate, next_direction++) : between_centres(moved, task);
-    double gap = gap_along(model, moved, task, half, normal, answer != ALONG_BY_CORNERS);
-    if (!(gap > LEAST_GAP)) fail(REFUSED, "task %zu: a direction that does not separate (%.3g m)", i, gap);
-    smallest = fmin(smallest, gap);
-    Pair* pair = model->pairs + task->pair;
-    if (task->first == pair->first && task->second == pair->second) pair->apart = true;
+    place_frames(proof->model, task->motion, ldexp((double)task->index + 0.5, -task->level), half, proof->moved);
+    if (task->first) {
+      separate(proof, task, answer, half);
+    } else {
+      const Kept* kept = certificate->kept + task->number;
+      if (answer != ALONG_CENTRES) fail(REFUSED, "an answer to a constraint is a direction");
+      if (!(excess(proof->model, proof->moved, kept, half) <= LEAST_GAP)) {
+        fail(REFUSED, "%.60s is not proved to keep its constraint", kept->link);
+      }
+    }
   }
-  if (waiting != answers) fail(REFUSED, "answers without a task");
-  if (next_direction != certificate->direction_count) fail(REFUSED, "directions without a task");
-  return smallest;
+}
+
+/* Begin a queue: each pair, or each constraint, for each motion. */
+static void begin(Proof* proof, size_t count, bool of_pairs) {
+  const Certificate* certificate = proof->model->certificate;
+  if (count > (certificate->answer_count - proof->waiting) / certificate->motions) {
+    fail(REFUSED, "tasks without an answer");
+  }
+  for (size_t motion = 0; motion < certificate->motions; ++motion) {
+    for (size_t i = 0; i < count; ++i) {
+      Task task = {.number = i, .motion = motion};
+      if (of_pairs) task.first = proof->model->pairs[i].first, task.second = proof->model->pairs[i].second;
+      proof->tasks[proof->waiting++] = task;
+    }
+  }
+}
+
+double prove(Model* model) {
+  const Certificate* certificate = model->certificate;
+  Proof proof = {.model = model, .smallest = INFINITY};
+  proof.tasks = take(certificate->answer_count + 1, sizeof *proof.tasks);
+  proof.moved = take(model->frame_count, sizeof *proof.moved);
+  begin(&proof, model->pair_count, true);
+  answer_all(&proof);
+  begin(&proof, certificate->kept_count, false);
+  answer_all(&proof);
+  if (proof.waiting != certificate->answer_count) fail(REFUSED, "answers without a task");
+  if (proof.directions != certificate->direction_count) fail(REFUSED, "directions without a task");
+  return proof.smallest;
 }

@@ -38,39 +38,6 @@ Proved verify(const Inputs* inputs, const Certificate* certificate) {
   return proved;
 }
 
-static bool is_straight(const Certificate* certificate) {
-  size_t joints = certificate->joint_count;
-  for (size_t i = 0; certificate->degree == 2 && i < certificate->motions * joints; ++i) {
-    const double* p = certificate->values + 2 * (i / joints) * joints + i % joints;
-    if (!(fabs(p[joints] - 0.5 * (p[0] + p[2 * joints])) < 1e-12)) return false;
-  }
-  return true;
-}
-
-void require_same_path(const Certificate* certificate, const char* path) {
-  if (!is_straight(certificate)) fail(REFUSED, "it proves curves, which no table of waypoints gives");
-  File file = read_file(path);
-  char* text = copied((const char*)file.data, file.size);
-  size_t row = 0, joints = certificate->joint_count, ends = certificate->motions + 1;
-  for (char* line = strtok(text, " \t\r\n"); line; line = strtok(NULL, " \t\r\n"), ++row) {
-    size_t column = 0;
-    for (char* cell = line; cell; ++column) {
-      char* comma = strchr(cell, ',');
-      if (comma) *comma++ = 0;
-      if (row > ends || column >= joints) fail(REFUSED, "%s has more than the certificate", path);
-      if (row == 0 && strcmp(cell, certificate->joints[column]) != 0) fail(REFUSED, "%s has other joints", path);
-      double value = 0;
-      if (row) read_numbers(cell, &value, 1, path);
-      if (row && value != certificate->values[((row - 1) * certificate->degree) * joints + column]) {
-        fail(REFUSED, "%s has other waypoints than the certificate", path);
-      }
-      cell = comma;
-    }
-    if (column != joints) fail(REFUSED, "%s has other joints", path);
-  }
-  if (row != ends + 1) fail(REFUSED, "%s has other waypoints than the certificate", path);
-}
-
 /* A list after its title, with commas; nothing if it is empty. */
 static void print_item(const char* title, const char* item, bool* begun) {
   printf(*begun ? ", %s" : "  %s: %s", *begun ? item : title, item);
@@ -130,11 +97,23 @@ static void print_not_claimed(const Model* model) {
   printf("  that the robot is built, calibrated, placed and controlled as the files say: and when it is where\n");
 }
 
-static void print_kept(const Certificate* certificate) {
+static void print_distances(const Certificate* certificate) {
   if (certificate->clearance > 0) printf(", %g m from all obstacles", certificate->clearance);
   for (size_t i = 0; i < certificate->padding_count; ++i) {
     printf(", %s %g m more", certificate->padding[i].name, certificate->padding[i].value);
   }
+  printf("\n");
+}
+
+static void print_vector(const char* before, Vector a) { printf("%s(%.6g, %.6g, %.6g)", before, a.x, a.y, a.z); }
+
+static void print_kept(const Kept* kept) {
+  const double* q = kept->xyzw;
+  print_vector(kept->is_axis ? "  the axis " : "  the point ", kept->part);
+  printf(" of %s is within %g %s of ", kept->link, kept->within, kept->is_axis ? "rad" : "m");
+  print_vector(kept->is_axis ? "" : "the box ", kept->low);
+  if (!kept->is_axis) print_vector(" to ", kept->high);
+  if (!kept->is_axis) printf(", turned by the quaternion (%.6g, %.6g, %.6g, %.6g)", q[0], q[1], q[2], q[3]);
   printf("\n");
 }
 
@@ -144,12 +123,14 @@ void print_proved(const Proved* proved) {
   size_t last = (certificate->points - 1) * certificate->joint_count;
   printf("PROVED: %zu %s touch nothing", certificate->motions,
          is_straight(certificate) ? "straight motions" : "curves");
-  print_kept(certificate);
+  print_distances(certificate);
   for (size_t i = 0; i < certificate->joint_count; ++i) {
     double from = certificate->values[i], to = certificate->values[last + i];
     printf("  %s: from %.6g to %.6g\n", certificate->joints[i], from, to);
   }
   printf("  smallest gap of a step of the proof: %.3g m\n", proved->smallest);
+  for (size_t i = 0; i < certificate->kept_count; ++i) print_kept(certificate->kept + i);
+  if (certificate->tolerance > 0) printf("  every joint may be %g off the curves\n", certificate->tolerance);
   printf("pairs proved apart (%zu):\n", model->pair_count);
   for (size_t i = 0; i < model->pair_count; ++i) {
     const Pair* pair = model->pairs + i;
@@ -168,7 +149,7 @@ void print_no_path(const NoPath* shown) {
   const Certificate* certificate = model->certificate;
   size_t bodies = model->body_count + model->inputs->obstacle_count, pairs = 0;
   printf("PROVED: no path leads from the start to any goal: each one touches something");
-  print_kept(certificate);
+  print_distances(certificate);
   printf("  goals: %zu configurations\n", certificate->goals);
   for (size_t i = 0; i < certificate->joint_count; ++i) {
     printf("  %s: from %.6g", certificate->joints[i], certificate->values[i]);

@@ -13,7 +13,10 @@ typedef struct {
 /* What a certificate proves about its inputs; fails if it does not. */
 Proved verify(const Inputs* inputs, const Certificate* certificate);
 
-/* Refuse unless the waypoints of a CSV, whose first row names the joints, are those of the certificate. */
+/* Tell whether no motion is bent. */
+bool is_straight(const Certificate* certificate);
+
+/* Refuse unless the rows of a CSV are the waypoints of a certificate, or follow its curves within their tolerance. */
 void require_same_path(const Certificate* certificate, const char* path);
 
 /* Print what was proved, about which bodies, and what is not claimed. */

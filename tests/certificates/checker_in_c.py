@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.certificates.written import accepts
+
 SOURCES = Path(__file__).parents[2] / "checker" / "c"
 STRICT = ["-std=c99", "-O1", "-g", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 SANITIZERS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
@@ -78,6 +80,12 @@ class ManyChecks:
         code = self.code(certificate)
         assert code in (ACCEPTED, REFUSED)
         return code == ACCEPTED
+
+    def agrees(self, certificate, inputs):
+        """Return whether a certificate is accepted, which the checker in Python must say, too."""
+        said = self.accepts(certificate)
+        assert accepts(bytes(certificate), inputs) == said
+        return said
 
     def _ask(self, letter, data):
         self._process.stdin.write(letter + struct.pack("<I", len(data)) + data)

@@ -1,6 +1,7 @@
 """Constraints of a certificate: an upright axis, and a tip on its line, in its plane or box; against kinematics."""
 
 import itertools
+import subprocess
 
 import numpy as np
 import pytest
@@ -13,9 +14,11 @@ from evenroad.constraints.constrained_world import kept_world
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import read_inputs
-from evenroad_verify.command import verify
+from evenroad_verify.command import main, verify
 from evenroad_verify.errors import Refused
-from tests.certificates.written import accepts, box_reach, joined, parts_of
+from tests.certificates.checker_in_c import ManyChecks, program
+from tests.certificates.small import URDF, certificate_in, inputs_of
+from tests.certificates.written import box_reach, joined, parts_of
 from tests.robots.oracle import link_poses
 
 START = np.array([0.3, -1.2, 1.4, -1.8, -1.5, 0.2])
@@ -54,6 +57,12 @@ def kept(request, tmp_path_factory):
     return world, path, file.read_bytes()
 
 
+@pytest.fixture(scope="module")
+def many():
+    with ManyChecks() as process:
+        yield process
+
+
 def inputs_in(data):
     """Return what a certificate carries."""
     return read_inputs(None, None, None, {}, read_certificate(data))
@@ -64,9 +73,9 @@ def _between(path):
     return np.concatenate([a + share * (b - a) for a, b in itertools.pairwise(path)])
 
 
-def test_what_is_proved_holds_at_states_of_the_path(kept):
+def test_what_is_proved_holds_at_states_of_the_path(kept, many):
     world, path, data = kept
-    assert accepts(data, inputs_in(data))
+    assert many.agrees(data, inputs_in(data))
     assert _off(world.keeps[0], _between(path)).max() <= world.keeps[0].within
 
 
@@ -78,14 +87,14 @@ def _with_limit(data, limit):
     return data.replace(line.encode(), f"{kind} {limit!r} {rest}".encode())
 
 
-def test_a_tighter_limit_than_what_is_kept_is_refused(kept):
+def test_a_tighter_limit_than_what_is_kept_is_refused(kept, many):
     world, path, data = kept
     most = float(_off(world.keeps[0], _between(path)).max())
-    assert not accepts(_with_limit(data, most - 1e-6), inputs_in(data))
-    assert accepts(_with_limit(data, 1.5 * world.keeps[0].within), inputs_in(data))
+    assert not many.agrees(_with_limit(data, most - 1e-6), inputs_in(data))
+    assert many.agrees(_with_limit(data, 1.5 * world.keeps[0].within), inputs_in(data))
 
 
-def test_an_axis_without_a_length_and_a_point_too_far_for_double_precision_are_refused(kept):
+def test_an_axis_without_a_length_and_a_point_too_far_for_double_precision_are_refused(kept, many):
     _, _, data = kept
     lines, *_ = parts_of(data)
     (line,) = [line for line in lines if line.startswith(("axis ", "point "))]
@@ -94,9 +103,12 @@ def test_an_axis_without_a_length_and_a_point_too_far_for_double_precision_are_r
     forged = data.replace(line.encode(), " ".join((begins, *rest)).encode())
     with pytest.raises(Refused, match=wanted):
         verify(forged, inputs_in(data))
+    assert not many.agrees(forged, inputs_in(data))
+    less = data.replace(line.encode(), line.replace(f"{kind} ", f"{kind} -", 1).encode())
+    assert not many.agrees(less, inputs_in(data))
 
 
-def test_an_answer_to_a_constraint_is_that_it_is_kept(kept):
+def test_an_answer_to_a_constraint_is_that_it_is_kept(kept, many):
     _, _, data = kept
     certificate = read_certificate(data)
     own = len(certificate.answers) - 1
@@ -107,7 +119,33 @@ def test_an_answer_to_a_constraint_is_that_it_is_kept(kept):
         digits[own % 3] = answer
         other[-1] = digits[0] + 6 * digits[1] + 36 * digits[2]
         forged = joined(lines, waypoints, other, rest) + _carried(data)
-        assert not accepts(forged, inputs_in(data))
+        assert not many.agrees(forged, inputs_in(data))
+
+
+def test_both_commands_print_the_same_of_a_constraint(kept, tmp_path, capsys):
+    (tmp_path / "kept.cert").write_bytes(kept[2])
+    assert main([str(tmp_path / "kept.cert")]) == 0
+    done = subprocess.run([program("command"), tmp_path / "kept.cert"], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, capsys.readouterr().out, "")
+
+
+@pytest.mark.parametrize(
+    ("answers", "holds"), [((3,), True), ((0, 3, 3), True), ((1, 3, 3), False), ((2, 3, 3), False)]
+)
+def test_a_constraint_has_no_node_that_could_be_halved(answers, holds, tmp_path, many):
+    two = URDF.replace(
+        "<collision>", '<collision><geometry><sphere radius="0.1"/></geometry></collision><collision>', 1
+    )
+    scene = "obstacles:\n  post: {shape: sphere, radius: 0.1, xyz: [0.0, 2.0, 0.0]}\n"
+    sources, data = certificate_in(tmp_path, scene, [[-0.4], [0.0]], two)
+    assert many.read(sources.robot, sources.scene) == 0
+    lines, waypoints, packed, directions = parts_of(data)
+    count = len(read_certificate(data).answers)
+    digits = [*[each // step % 6 for each in packed for step in (1, 6, 36)][:count], *answers, 0, 0]
+    packed = bytearray((np.reshape(digits[: len(digits) // 3 * 3], (-1, 3)) @ [1, 6, 36]).tolist())
+    lines = [f"answers {count + len(answers)}" if line.startswith("answers ") else line for line in lines]
+    forged = joined([*lines, "axis 0.1 0 0 1 0 0 1 ball"], waypoints, packed, directions)
+    assert many.agrees(forged, inputs_of(sources)) is holds
 
 
 def _carried(data):

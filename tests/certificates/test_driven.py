@@ -1,5 +1,7 @@
 """Certificates of trajectories: parabolas near all that is driven, with rounded corners."""
 
+import subprocess
+
 import numpy as np
 import pytest
 
@@ -12,8 +14,9 @@ from evenroad.errors import InvalidValue
 from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import main as verify
+from tests.certificates.checker_in_c import ManyChecks, program
 from tests.certificates.small import sources_in
-from tests.certificates.written import PLAN, accepts, box_reach, joined, parts_of, touches
+from tests.certificates.written import PLAN, box_reach, joined, parts_of, touches
 
 TOLERANCE = 1e-5
 
@@ -57,28 +60,42 @@ def written(reach, tmp_path_factory):
     return (folder / "reach.cert").read_bytes()
 
 
-def test_a_trajectory_with_rounded_corners_is_proved(reach, written):
+@pytest.fixture(scope="module")
+def many():
+    with ManyChecks() as process:
+        yield process
+
+
+@pytest.fixture(scope="module")
+def about(many):
+    """Return whether both checkers accept a certificate about the plan's files."""
+    files = box_reach().sources
+    assert many.read(files.robot, files.scene, files.srdf) == 0
+    return lambda data: many.agrees(data, box_reach().inputs())
+
+
+def test_a_trajectory_with_rounded_corners_is_proved(reach, written, about):
     certificate = read_certificate(written)
     assert certificate.tolerance == TOLERANCE
     assert len(certificate.curves) < 0.2 * len(reach.positions)
-    assert accepts(written, box_reach().inputs())
+    assert about(written)
     assert not touches(box_reach(), reach.positions[::5], states=3)
 
 
-def test_a_control_point_that_moves_is_refused_unless_the_curve_is_free(written):
+def test_a_control_point_that_moves_is_refused_unless_the_curve_is_free(written, about):
     rng = np.random.default_rng(0)
     for _ in range(4):
         lines, points, packed, directions = parts_of(written)
         points[rng.integers(len(points)), rng.integers(6)] += 0.3
-        assert not accepts(joined(lines, points, packed, directions), box_reach().inputs())
+        assert not about(joined(lines, points, packed, directions))
 
 
-def test_a_larger_tolerance_than_is_proved_is_refused(written):
-    assert not accepts(written.replace(b"tolerance 1e-05", b"tolerance 1e-01"), box_reach().inputs())
-    assert accepts(written.replace(b"tolerance 1e-05", b"tolerance 1e-06"), box_reach().inputs())
+def test_a_larger_tolerance_than_is_proved_is_refused(written, about):
+    assert not about(written.replace(b"tolerance 1e-05", b"tolerance 1e-01"))
+    assert about(written.replace(b"tolerance 1e-05", b"tolerance 1e-06"))
 
 
-def test_joints_within_the_tolerance_may_use_up_a_gap(tmp_path):
+def test_joints_within_the_tolerance_may_use_up_a_gap(tmp_path, many):
     """The ball, 1.1 m from the axis at its farthest, has 1 mm to a wall that it comes to only beyond the curve."""
     wall = "obstacles:\n  wall: {{shape: box, size: [2, 0.2, 2], xyz: [0, {y!r}, 0]}}\n"
     for gap, tolerance, free in ((1e-3, 5e-4, True), (1e-3, 2e-3, False)):
@@ -88,10 +105,11 @@ def test_joints_within_the_tolerance_may_use_up_a_gap(tmp_path):
         certify(world, path, sources, tmp_path / "arm.cert", states=np.linspace(0.0, 1.0, 9)[:, np.newaxis])
         data = (tmp_path / "arm.cert").read_bytes()
         inputs = read_inputs(sources.robot, sources.scene, None, {})
-        assert accepts(data, inputs)
+        assert many.read(sources.robot, sources.scene) == 0
+        assert many.agrees(data, inputs)
         # A bound of what the joint may move beyond the curve is its lever, 1.1 m, times the tolerance.
         wider = data.replace(b"tolerance 1e-05", f"tolerance {tolerance!r}".encode())
-        assert accepts(wider, inputs) is free
+        assert many.agrees(wider, inputs) is free
 
 
 def test_the_command_certifies_what_is_driven_and_compares_its_table(tmp_path, monkeypatch, capsys):
@@ -100,7 +118,11 @@ def test_the_command_certifies_what_is_driven_and_compares_its_table(tmp_path, m
     assert "reach.cert of the trajectory" in capsys.readouterr().out
     files = [str(each) for each in (box_reach().sources.robot, box_reach().sources.scene, box_reach().sources.srdf)]
     assert verify(["reach.cert", *files, "--path", "go.csv"]) == 0
-    assert "every joint may be 1e-05 off the curves" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "every joint may be 1e-05 off the curves" in said
+    in_c = [program("command"), "reach.cert", *files, "--path", "go.csv"]
+    done = subprocess.run(in_c, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, said, "")
     header, *rows = (tmp_path / "go.csv").read_text().splitlines()
     table = np.array([row.split(",") for row in rows], float)
     for change in ("a state", "an end", "a jump", "a column"):
@@ -116,6 +138,7 @@ def test_the_command_certifies_what_is_driven_and_compares_its_table(tmp_path, m
         text = "\n".join([names, *(",".join(map(repr, row)) for row in other.tolist())])
         (tmp_path / "go.csv").write_text(text)
         assert verify(["reach.cert", *files, "--path", "go.csv"]) == 1
+        assert subprocess.run(in_c, capture_output=True).returncode == 1
 
 
 def test_states_that_touch_have_no_certificate(reach, tmp_path):

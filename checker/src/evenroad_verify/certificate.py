@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
@@ -16,44 +17,30 @@ from evenroad_verify.shapes import rotation_of
 MAGIC = b"evenroad certificate 1\n"
 MOST_MOTIONS = 1 << 20
 _Read = TypeVar("_Read")
+_DIGEST = re.compile("[0-9a-f]{64}")
 FARTHEST = 1000.0
 """Largest value of a joint [rad or m]."""
 
 
 @dataclass(frozen=True)
-class Axis:
-    """An `axis` of a link stays within an angle of a `direction` of the root."""
+class Kept:
+    """A constraint: a unit vector of a link, or a `part` that is a point, is within an angle or a distance of a box.
+
+    The box is turned by a quaternion.  Of a vector both `low` and `high` are its direction.
+    """
 
     link: str
+    is_axis: bool
     within: float
-    axis: Floats
-    direction: Floats
-
-    @property
-    def limit(self) -> float:
-        """Largest distance of the two unit vectors."""
-        return 2.0 * float(np.sin(0.5 * min(self.within, np.pi)))
-
-    def off(self, at: Floats) -> Floats:
-        """Return the distance of unit vectors, (n, 3), from the direction."""
-        return np.asarray(np.linalg.norm(at - self.direction, axis=1))
-
-
-@dataclass(frozen=True)
-class Point:
-    """A `point` of a link stays within a distance of a box, `low` to `high` in a frame that is turned by `xyzw`."""
-
-    link: str
-    within: float
-    point: Floats
+    part: Floats
     xyzw: Floats
     low: Floats
     high: Floats
 
     @property
     def limit(self) -> float:
-        """Largest distance from the box [m]."""
-        return self.within
+        """Largest distance from the box [m]; of the ends of two unit vectors."""
+        return 2.0 * float(np.sin(0.5 * min(self.within, np.pi))) if self.is_axis else self.within
 
     def off(self, at: Floats) -> Floats:
         """Return the distance of places, (n, 3), from the box."""
@@ -77,8 +64,8 @@ class Certificate:
     held: dict[str, float] = field(default_factory=dict)
     clearance: float = 0.0
     padding: dict[str, float] = field(default_factory=dict)
-    axes: tuple[Axis, ...] = ()
-    points: tuple[Point, ...] = ()
+    kept: tuple[Kept, ...] = ()
+    """Constraints, axes first."""
     tolerance: float = 0.0
     """How far the joints may be from the curves."""
     robot: str | None = None
@@ -111,10 +98,7 @@ def _certificate(said: dict[str, list[str]], body: bytes) -> Certificate:
     once = ("degree", "motions", "answers", "directions")
     head, tolerance = head_of(said, once, ("axis", "point", "tolerance")), said.get("tolerance", ["0"])
     demand(len(tolerance) == 1, "its header has a line twice")
-    head["axes"] = tuple(Axis(link, float(v[0]), _unit(v[1:4]), _unit(v[4:])) for link, v in _rows(said, "axis", 7))
-    head["points"] = tuple(
-        Point(link, float(v[0]), v[1:4], v[4:8], v[8:11], v[11:]) for link, v in _rows(said, "point", 14)
-    )
+    head["kept"] = tuple(map(_axis, said.get("axis", ()))) + tuple(map(_point, said.get("point", ())))
     head["tolerance"] = _length(tolerance[0])
     dim = len(head["joints"])
     degree, motions, answers, directions = (count_of(said[key][0]) for key in once)
@@ -141,6 +125,7 @@ def head_of(said: dict[str, list[str]], once: tuple[str, ...], others: tuple[str
     robot, scene = (said.get(key, [None]) for key in ("robot", "scene"))
     demand(joints and len(set(joints)) == len(joints), "its header names a joint twice, or none")
     demand(len(clearance) == len(robot) == len(scene) == 1, "its header has a line twice")
+    demand(all(each in (None, "-") or _DIGEST.fullmatch(each) for each in (*robot, *scene)), "a digest is none")
     return {
         "inputs": said["inputs"][0],
         "joints": tuple(joints),
@@ -162,11 +147,12 @@ def tables_of(said: dict[str, list[str]], body: bytes, sizes: list[int]) -> tupl
 
 def _files(data: bytes) -> Iterator[bytes]:
     """Yield the files at the end of a certificate, each after its length in 8 bytes."""
-    while data:
-        size = int.from_bytes(data[:8], "little")
-        demand(len(data) >= 8 + size, "a file that it carries is cut off")
-        yield data[8 : 8 + size]
-        data = data[8 + size :]
+    at = 0
+    while at < len(data):
+        size = int.from_bytes(data[at : at + 8], "little")
+        demand(len(data) >= at + 8 + size, "a file that it carries is cut off")
+        yield data[at + 8 : at + 8 + size]
+        at += 8 + size
 
 
 def count_of(text: str) -> int:
@@ -180,17 +166,27 @@ def _length(value: Any) -> float:
     return number(value)
 
 
-def _rows(said: dict[str, list[str]], key: str, count: int) -> Iterator[tuple[str, Floats]]:
-    """Yield name and numbers of lines of `count` numbers and a name."""
-    for line in said.get(key, ()):
-        *words, name = line.split(" ", count)
-        yield name, numbers(words, count)
+def _axis(line: str) -> Kept:
+    *words, link = line.split(" ", 7)
+    within, *vectors = numbers(words, 7).tolist()
+    demand(within >= 0.0, "a constraint is within less than 0")
+    direction = _unit(vectors[3:])
+    return Kept(link, True, within, _unit(vectors[:3]), np.eye(4)[3], direction, direction)
 
 
-def _unit(vector: Floats) -> Floats:
+def _point(line: str) -> Kept:
+    *words, link = line.split(" ", 14)
+    within, *rest = numbers(words, 14).tolist()
+    demand(within >= 0.0, "a constraint is within less than 0")
+    point, xyzw, low, high = np.split(np.array(rest), (3, 7, 10))
+    demand(np.linalg.norm(xyzw) > 1e-9, "a quaternion is zero")
+    return Kept(link, False, within, point, xyzw, low, high)
+
+
+def _unit(vector: list[float]) -> Floats:
     length = float(np.linalg.norm(vector))
     demand(length > 1e-6, "an axis has no length")
-    return np.asarray(vector / length)
+    return np.array(vector) / length
 
 
 def _named(lines: list[str]) -> dict[str, float]:

@@ -90,8 +90,10 @@ def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
     frames, nodes = frames_of(robot, certificate), Nodes()
     bodies, place = bodies_of(inputs, frames)
     demand(certificate.padding.keys() <= bodies.keys(), "a link is padded that has no shape")
-    kept = {each.link for each in certificate.axes} | {each.link for each in certificate.points}
-    demand(kept <= frames.place.keys(), "a constraint is about a link that the robot lacks")
+    demand(
+        {each.link for each in certificate.kept} <= frames.place.keys(),
+        "a constraint is about a link that the robot lacks",
+    )
     require_limits(frames, scene, certificate)
     around = _around(frames, nodes, bodies, place, scene, certificate)
     whole = {name: nodes.whole(place[name][0], shapes) for name, shapes in bodies.items()}

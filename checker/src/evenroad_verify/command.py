@@ -117,12 +117,10 @@ def _lines(proved: Proved) -> list[str]:
     for name, first, last in zip(read.joints, read.curves[0, 0], read.curves[-1, 2], strict=True):
         lines.append(f"  {name}: from {first:.6g} to {last:.6g}")
     lines.append(f"  smallest gap of a step of the proof: {proved.least:.3g} m")
-    for axis in read.axes:
-        near = f"{axis.within:g} rad of {_row(axis.direction)}"
-        lines.append(f"  the axis {_row(axis.axis)} of {axis.link} is within {near}")
-    for point in read.points:
-        box = f"the box {_row(point.low)} to {_row(point.high)}, turned by the quaternion {_row(point.xyzw)}"
-        lines.append(f"  the point {_row(point.point)} of {point.link} is within {point.within:g} m of {box}")
+    for kept in read.kept:
+        box = f"the box {_row(kept.low)} to {_row(kept.high)}, turned by the quaternion {_row(kept.xyzw)}"
+        within = f"{kept.within:g} rad of {_row(kept.low)}" if kept.is_axis else f"{kept.within:g} m of {box}"
+        lines.append(f"  the {'axis' if kept.is_axis else 'point'} {_row(kept.part)} of {kept.link} is within {within}")
     if read.tolerance:
         lines.append(f"  every joint may be {read.tolerance:g} off the curves")
     lines.append(f"pairs proved apart ({len(claim.pairs)}):")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from evenroad_verify.certificate import Axis, Certificate, Point
+from evenroad_verify.certificate import Certificate, Kept
 from evenroad_verify.claim import Claim
 from evenroad_verify.errors import Answers, Bools, Floats, Ints, demand
 from evenroad_verify.nodes import Nodes
@@ -18,6 +18,8 @@ FINEST = 40
 """Number of times that a motion may be halved."""
 MOTION, NUMBER, LEVEL, FIRST, SECOND, PAIR = range(6)
 """Columns of tasks: a stretch is the part `NUMBER` of the 2^LEVEL parts of a motion."""
+NO_NODE = -1
+"""Stands for the nodes of a task that is about a constraint."""
 _AT_ONCE = 1 << 14
 
 
@@ -25,15 +27,15 @@ def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, In
     """Return the least gap of all answers [m] and the answered tasks; Refused where a task is not proved."""
     pairs = np.array([(pair.first, pair.second) for pair in claim.pairs], np.int64).reshape(-1, 2)
     tasks, answers, left = expand(claim.nodes, _first(certificate, pairs), certificate.answers)
-    keeps: list[Axis | Point] = [*certificate.axes, *certificate.points]
-    kept, how, left = expand(claim.nodes, _first(certificate, np.zeros((len(keeps), 2), np.int64)), left)
+    none = np.full((len(certificate.kept), 2), NO_NODE)
+    kept, how, left = expand(claim.nodes, _first(certificate, none), left)
     demand(not len(left), "there are answers without a task")
     demand((how == CENTRES).all(), "an answer to a constraint is a direction")
     given = np.cumsum(answers > CENTRES) - 1
     demand(int((answers > CENTRES).sum()) == len(certificate.directions), "directions are missing or left over")
     _, out = claim.frames.far(certificate.curves, certificate.tolerance)
     reach = (np.array(claim.nodes.reach) + out[np.array(claim.nodes.frame)])[tasks[:, FIRST : SECOND + 1]]
-    places = [(claim.frames.place[point.link], point.point) for point in certificate.points]
+    places = [(claim.frames.place[each.link], each.part) for each in certificate.kept if not each.is_axis]
     arms = [out[frame] + np.linalg.norm(turn @ point + shift) for (frame, (turn, shift)), point in places]
     farthest = max(reach.max(initial=0.0), *arms, 0.0)
     largest = 1.0 + np.abs(certificate.curves).max() * max(1.0, float(np.abs(claim.frames.factor).max()))
@@ -49,7 +51,7 @@ def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, In
             first, second = claim.pairs[tasks[start + worst, PAIR]].names
             demand(False, f"motion {tasks[start + worst, MOTION]}: {first} and {second} are not proved apart")
         least = min(least, float(gap[worst]))
-    for number, each in enumerate(keeps):
+    for number, each in enumerate(certificate.kept):
         excess = motions.excess(kept[kept[:, PAIR] == number], each)
         demand((excess <= LEAST).all(), f"{each.link} is not proved to keep its constraint")
     return least, tasks
@@ -84,6 +86,7 @@ def _halved(nodes: Nodes, tasks: Ints, answer: Ints) -> Ints:
     for which, column in ((HALVE_FIRST, FIRST), (HALVE_SECOND, SECOND)):
         rows = np.flatnonzero(by == which)
         node, where = np.unique(new[rows, column], return_inverse=True)
+        demand(NO_NODE not in node, "a constraint has no node that could be halved")
         halves = np.array([nodes.halves(int(each)) for each in node], np.int64).reshape(-1, 2)
         new[rows, column] = halves[where, side[rows]]
     return new
@@ -127,18 +130,18 @@ class Motions:
                 ends[e] += sign * time * np.einsum("nc,nc->n", direction, shift)
         return np.asarray(-ends.max(0) - stray)
 
-    def excess(self, tasks: Ints, kept: Axis | Point) -> Floats:
+    def excess(self, tasks: Ints, kept: Kept) -> Floats:
         """Return by how much a constraint may be exceeded during the stretches of tasks [m, or of a unit vector]."""
         half = np.asarray(0.5 ** (tasks[:, LEVEL, None] + 1.0))
         rate, bend, rotation, origin, turning, along = self._middle_states(_middles(tasks))
         frame, (turn, shift) = self._frames.place[kept.link]
         moves = self._carries[frame]
-        if isinstance(kept, Axis):
+        if kept.is_axis:
             moves, lever = moves & ~self._slides, np.ones(len(moves))
-            at = rotation[:, frame] @ (turn @ kept.axis)
+            at = rotation[:, frame] @ (turn @ kept.part)
             velocity = np.cross((moves[:, None] * turning).sum(1), at)
         else:
-            point = turn @ kept.point + shift
+            point = turn @ kept.part + shift
             lever = self._far[frame] + np.linalg.norm(point)
             at = rotation[:, frame] @ point + origin[:, frame]
             velocity = np.cross((moves[:, None] * turning).sum(1), at) + (moves[:, None] * along).sum(1)

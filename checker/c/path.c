@@ -1,0 +1,161 @@
+/* The table of a path or of a trajectory, which must be what a certificate is about. */
+#include <string.h>
+
+#include "verify.h"
+
+enum { FINE = 64 }; /* parts of a curve, in which what is near it is looked for */
+
+static const double STILL = 1e-9;
+
+bool is_straight(const Certificate* certificate) {
+  size_t joints = certificate->joint_count;
+  for (size_t i = 0; certificate->degree == 2 && i < certificate->motions * joints; ++i) {
+    const double* p = certificate->values + 2 * (i / joints) * joints + i % joints;
+    if (!(fabs(p[joints] - 0.5 * (p[0] + p[2 * joints])) < 1e-12)) return false;
+  }
+  return true;
+}
+
+/* What a column of a table says: the value of a joint of the certificate, of another one, or nothing of a place. */
+typedef struct {
+  size_t joint; /* or NONE */
+  bool skipped;
+  double held;
+} Column;
+
+/* Cut a text at the next mark; NULL at its end. */
+static char* next_part(char** text, const char* marks) {
+  char* part = *text;
+  if (!part) return NULL;
+  char* end = part + strcspn(part, marks);
+  *text = *end ? end + 1 : NULL;
+  *end = 0;
+  return part;
+}
+
+static Column column_named(const Certificate* certificate, char* name) {
+  static const char unit[] = " [rad or m]";
+  size_t size = strlen(name), width = sizeof unit - 1;
+  Column column = {.joint = NONE, .skipped = !strcmp(name, "time [s]") || strstr(name, "/s")};
+  if (size >= width && !strcmp(name + size - width, unit)) name[size - width] = 0;
+  for (size_t i = 0; i < certificate->joint_count && !column.skipped; ++i) {
+    if (!strcmp(certificate->joints[i], name)) column.joint = i;
+  }
+  for (size_t i = 0; i < certificate->held_count; ++i) {
+    if (!strcmp(certificate->held[i].name, name)) column.held = certificate->held[i].value;
+  }
+  return column;
+}
+
+/* Read the first line: each joint of the certificate must have one column. */
+static Column* columns_of(const Certificate* certificate, char* line, size_t* count, const char* path) {
+  Column* columns = take(strlen(line) + 1, sizeof *columns);
+  size_t* seen = take(certificate->joint_count, sizeof *seen);
+  for (char* name; (name = next_part(&line, ","));) {
+    Column column = columns[(*count)++] = column_named(certificate, name);
+    if (column.joint != NONE) ++seen[column.joint];
+  }
+  for (size_t i = 0; i < certificate->joint_count; ++i) {
+    if (seen[i] != 1) fail(REFUSED, "%s has other joints than the certificate", path);
+  }
+  return columns;
+}
+
+/* Read rows of values as the points of the certificate have them. */
+static double* rows_of(const Certificate* certificate, const char* path, size_t* count) {
+  File file = read_file(path);
+  char *text = copied((const char*)file.data, file.size), *line = next_part(&text, "\r\n");
+  size_t joints = certificate->joint_count, column_count = 0, lines = 2;
+  for (const char* each = text; each && *each; ++each) lines += *each == '\n';
+  Column* columns = columns_of(certificate, line, &column_count, path);
+  double* rows = take(lines * joints, sizeof *rows);
+  while ((line = next_part(&text, "\r\n"))) {
+    size_t column = 0;
+    if (!*line) continue;
+    for (char* cell; (cell = next_part(&line, ",")); ++column) {
+      double value = 0;
+      if (column == column_count) fail(BAD_INPUT, "%s is no table", path);
+      read_numbers(cell, &value, 1, path);
+      const Column* of = columns + column;
+      if (of->joint != NONE) rows[*count * joints + of->joint] = value;
+      if (of->joint == NONE && !of->skipped && !(fabs(value - of->held) <= STILL)) {
+        fail(REFUSED, "%s has a joint elsewhere than the certificate", path);
+      }
+    }
+    if (column != column_count) fail(BAD_INPUT, "%s is no table", path);
+    ++*count;
+  }
+  return rows;
+}
+
+/* The curves as a chain of `FINE` straight parts each: its end number `index`. */
+static void find_place(const Certificate* certificate, size_t index, double* place) {
+  size_t joints = certificate->joint_count, degree = certificate->degree, motion = index / FINE;
+  double t = (double)(index % FINE) / FINE;
+  if (motion == certificate->motions) --motion, t = 1;
+  for (size_t i = 0; i < joints; ++i) {
+    const double* p = certificate->values + motion * degree * joints + i;
+    double last = p[degree * joints], middle = degree == 2 ? p[joints] : 0.5 * (p[0] + last);
+    place[i] = (1 - t) * (1 - t) * p[0] + 2 * t * (1 - t) * middle + t * t * last;
+  }
+}
+
+/* How far a point is from a straight way. */
+static double away(const double* point, const double* a, const double* b, size_t joints) {
+  double along = 0, square = 0, all = 0;
+  for (size_t i = 0; i < joints; ++i) {
+    along += (point[i] - a[i]) * (b[i] - a[i]);
+    square += (b[i] - a[i]) * (b[i] - a[i]);
+  }
+  double share = square > 0 ? fmin(1, fmax(0, along / square)) : 0;
+  for (size_t i = 0; i < joints; ++i) all += pow(point[i] - a[i] - share * (b[i] - a[i]), 2);
+  return sqrt(all);
+}
+
+/* How far a curve strays from its straight parts: an eighth of its second derivative times their length squared. */
+static double strays(const Certificate* certificate) {
+  size_t joints = certificate->joint_count;
+  double most = 0;
+  for (size_t motion = 0; certificate->degree == 2 && motion < certificate->motions; ++motion) {
+    const double* p = certificate->values + 2 * motion * joints;
+    double square = 0;
+    for (size_t i = 0; i < joints; ++i) square += pow(2 * (p[i] - 2 * p[joints + i] + p[2 * joints + i]), 2);
+    most = fmax(most, sqrt(square));
+  }
+  return most / FINE / FINE / 8;
+}
+
+/* Tell whether rows, and the straight ways between them, follow the curves within their tolerance. */
+static bool are_near(const Certificate* certificate, const double* rows, size_t count) {
+  size_t joints = certificate->joint_count, at = 0, last = certificate->motions * FINE;
+  double near = certificate->tolerance - strays(certificate);
+  double* places = take(3 * joints, sizeof *places); /* the ends of the part that a row is near, and the next one */
+  for (size_t k = 0; k < 3; ++k) find_place(certificate, k, places + k * joints);
+  for (size_t i = 0; i < count; ++i) {
+    const double *row = rows + i * joints, *before = i ? row - joints : row;
+    while (at + 2 <= last &&
+           away(row, places + joints, places + 2 * joints, joints) < away(row, places, places + joints, joints)) {
+      memmove(places, places + joints, 2 * joints * sizeof *places);
+      if (++at + 2 <= last) find_place(certificate, at + 2, places + 2 * joints);
+      if (!(away(places, before, row, joints) <= near)) return false;
+    }
+    if (!(away(row, places, places + joints, joints) <= near)) return false;
+  }
+  find_place(certificate, last, places);
+  return count && away(places, rows + (count - 1) * joints, rows + (count - 1) * joints, joints) <= near;
+}
+
+void require_same_path(const Certificate* certificate, const char* path) {
+  size_t count = 0, joints = certificate->joint_count;
+  const double* rows = rows_of(certificate, path, &count);
+  if (certificate->tolerance > 0) {
+    if (!are_near(certificate, rows, count)) fail(REFUSED, "%s leaves the curves of the certificate", path);
+    return;
+  }
+  if (!is_straight(certificate)) fail(REFUSED, "it proves curves, which no table of waypoints gives");
+  bool same = count == certificate->motions + 1;
+  for (size_t i = 0; same && i < count * joints; ++i) {
+    same = rows[i] == certificate->values[i / joints * certificate->degree * joints + i % joints];
+  }
+  if (!same) fail(REFUSED, "%s has other waypoints than the certificate", path);
+}
