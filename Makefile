@@ -10,7 +10,7 @@ CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL := $(shell find src/evenroad/_native/cpp -name '*.?pp') src/evenroad/_native/CMakeLists.txt tools/build_backend.py
 
-.PHONY: help demo test test-peers lint native checker sanitize fuzz tidy docs bench bank mazes wheels release-check clean
+.PHONY: help demo test test-peers lint native checker sanitize fuzz tidy docs bench bank mazes wheels release-check clean variants
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
@@ -42,7 +42,8 @@ $(VENV)/.clang: | $(VENV)/.tools
 	@touch $@
 
 # The kernel lies beside the Python files that use it; an edit of its sources compiles what changed.
-$(VENV)/.native: $(KERNEL) | $(VENV)/.clang
+# EVENROAD_VARIANTS=all builds every instruction set, also where the one of this processor is built.
+$(VENV)/.native: $(KERNEL) $(if $(EVENROAD_VARIANTS),variants) | $(VENV)/.clang
 	$(BIN)/python tools/build_backend.py
 	@touch $@
 

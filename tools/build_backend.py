@@ -4,6 +4,9 @@
     python tools/build_backend.py --sanitized   # one more build of it, and its tests: make sanitize
     python tools/build_backend.py --wheels DIR  # source distribution, wheels of all targets, studies: make wheels
 
+The kernel is compiled for the newest instruction set that this processor runs.  EVENROAD_VARIANTS=all compiles all of
+them, as `make wheels` does for wheels that others install, and EVENROAD_VARIANTS=x86-64,x86-64-v3 these.
+
 A compiler of your own is taken where the environment variable CXX names one: `CXX=clang++ pip install .`.  Otherwise
 clang of the wheel `ziglang` compiles: nothing but Python needs to be installed.  (scikit-build-core alone would take
 the compiler that Python was built with, whether or not it exists.)  On Linux that clang compiles for any processor and
@@ -84,15 +87,18 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
     """Build a wheel."""
     from scikit_build_core import build
 
-    announce()
     defined = definitions()
+    announce()
+    began = time.perf_counter()
     settings: dict[str, Any] = {**tags(), **{f"cmake.define.{name}": value for name, value in defined.items()}}
     # Of the modules that an editable install left beside the Python files, only those that are built anew stay.
     own = defined.get("EVENROAD_SOABI", sysconfig.get_config_var("SOABI"))
     native = "evenroad/_native"
     modules = [f"{native}/*.so", f"!{native}/*.{own}.so", f"{native}/_sanitized*"]
     settings["wheel.exclude"] = [*modules, f"{native}/CMakeLists.txt", f"{native}/cpp/**", "__pycache__"]
-    return build.build_wheel(wheel_directory, {**settings, **(config_settings or {})}, metadata_directory)
+    wheel: str = build.build_wheel(wheel_directory, {**settings, **(config_settings or {})}, metadata_directory)
+    tell(f"the native kernel is built ({time.perf_counter() - began:.0f} s)")
+    return wheel
 
 
 def build_editable(
@@ -131,10 +137,11 @@ def record(files: dict[str, bytes], itself: str) -> str:
 
 
 def definitions() -> dict[str, str]:
-    """Return what CMakeLists.txt is told: the compiler, and where nanobind is."""
+    """Return what CMakeLists.txt is told: the compiler, where nanobind is, and the instruction sets."""
     import nanobind
 
     defined = {"NANOBIND_DIR": str(Path(nanobind.__file__).parent)}
+    defined["EVENROAD_VARIANTS"] = (os.environ.get("EVENROAD_VARIANTS") or "native").replace(",", ";")
     own = os.environ.get("CXX")
     if own:
         return {**defined, "CMAKE_CXX_COMPILER": ";".join(shlex.split(own))}
@@ -174,10 +181,17 @@ def tags() -> dict[str, list[str]]:
 
 
 def announce() -> None:
-    """Say what is going on, also to somebody who waits for pip, which shows nothing of a build."""
+    """Say what is compiled, with what, and how long that takes."""
     own = os.environ.get("CXX")
     how = f"with {own}" if own else "with clang of the wheel ziglang"
-    line = f"evenroad: compiling the native kernel {how}, once: one to three minutes"
+    sets = os.environ.get("EVENROAD_VARIANTS") or "native"
+    what = {"native": "for this processor", "all": "for all instruction sets"}.get(sets, f"for {sets}")
+    tell(f"compiling the native kernel {what} {how}, once: {'two to five minutes' if sets == 'all' else 'a minute'}")
+
+
+def tell(what: str) -> None:
+    """Say what is going on, also to somebody who waits for pip, which shows nothing of a build."""
+    line = f"evenroad: {what}"
     print(line, file=sys.stderr, flush=True)
     with suppress(OSError), open("/dev/tty", "w") as terminal:
         if not sys.stderr.isatty():
@@ -199,7 +213,18 @@ def build_in_place(kind: str = "native", **more: str) -> None:
         told.write_text("\n".join(arguments))
     run("cmake", "--build", str(folder), "--parallel", str(os.cpu_count() or 1))
     run("cmake", "--install", str(folder), "--prefix", str(ROOT / "src"))
-    print(f"the native kernel is built ({time.perf_counter() - began:.0f} s)", file=sys.stderr, flush=True)
+    if kind == "native":
+        remove_leftovers(folder)
+    tell(f"the native kernel is built ({time.perf_counter() - began:.0f} s)")
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove what an earlier build for this Python left beside the modules of this one: other instruction sets."""
+    installed = [Path(line).name for line in (folder / "install_manifest.txt").read_text().splitlines()]
+    suffix = next(name for name in installed if name.startswith("_cpu.")).removeprefix("_cpu")
+    for module in SOURCES.glob(f"_*{suffix}"):
+        if module.name not in installed and not module.name.startswith("_sanitized"):
+            module.unlink()
 
 
 def run(tool: str, *arguments: str) -> None:
@@ -255,6 +280,7 @@ def test_sanitized(tests: Sequence[str]) -> None:
 def build_wheels(folder: str) -> None:
     """Build what a release holds for this Python on Linux."""
     os.environ.pop("CXX", None)
+    os.environ["EVENROAD_VARIANTS"] = "all"
     os.chdir(ROOT)
     Path(folder).mkdir(parents=True, exist_ok=True)
     build_sdist(folder)

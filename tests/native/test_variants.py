@@ -9,10 +9,13 @@ import pytest
 
 from evenroad import _native
 from evenroad._native import variants
+from evenroad._native.digest import digest_of
 from evenroad.errors import NotAvailable, UnknownName
 
 USABLE = variants.usable()
 RELEASED = [each for each in USABLE if each != variants.SANITIZED]
+OTHERS = [each for each in RELEASED if each != _native.VARIANT]
+"""A build from source has one alone; EVENROAD_VARIANTS=all makes the others."""
 
 
 def test_the_newest_build_that_the_processor_runs_is_loaded(monkeypatch):
@@ -41,7 +44,40 @@ def test_a_clone_without_the_kernel_says_how_to_build_it(monkeypatch):
         variants.usable()
 
 
-@pytest.mark.parametrize("variant", RELEASED)
+def test_a_clone_whose_kernel_is_for_other_processors_says_so(monkeypatch):
+    monkeypatch.setattr(variants, "find_spec", lambda name: None)
+    with pytest.raises(NotAvailable, match="for other processors than this, .*: run `make native`"):
+        variants.usable()
+
+
+def test_a_kernel_of_other_sources_is_not_loaded(monkeypatch, tmp_path):
+    part = tmp_path / "common"
+    part.mkdir()
+    (part / "lanes.hpp").write_text("changed")
+    monkeypatch.delenv(variants.ENVIRONMENT, raising=False)
+    monkeypatch.setattr(variants, "SOURCES", str(tmp_path))
+    with pytest.raises(NotAvailable, match="is built from other sources than .*: run `make native`"):
+        variants.load()
+    monkeypatch.setattr(variants, "SOURCES", str(tmp_path / "of a wheel, which has none"))
+    assert USABLE[-1] == variants.load().VARIANT
+
+
+def test_the_digest_sees_a_changed_and_a_renamed_source(tmp_path):
+    part = tmp_path / "common"
+    part.mkdir()
+    seen = []
+    for name, text in (("a.hpp", "1"), ("a.hpp", "2"), ("b.hpp", "2")):
+        for old in part.iterdir():
+            old.unlink()
+        (part / name).write_text(text)
+        (part / "notes.txt").write_text(f"no source: {len(seen)}")
+        seen.append(digest_of(str(tmp_path)))
+    assert len(set(seen)) == 3
+    (part / "notes.txt").write_text("of another length")
+    assert digest_of(str(tmp_path)) == seen[-1]
+
+
+@pytest.mark.parametrize("variant", OTHERS)
 def test_maps_and_neighbours_are_the_same_bits_in_every_build(variant, monkeypatch):
     """Of verdicts, places and paths: no sum of theirs is fused, so all builds round alike."""
     monkeypatch.setenv(variants.ENVIRONMENT, variant)
@@ -64,7 +100,7 @@ def test_maps_and_neighbours_are_the_same_bits_in_every_build(variant, monkeypat
 
 
 @pytest.mark.skipif(_native.VARIANT == variants.SANITIZED, reason="its blocks are narrower")
-@pytest.mark.parametrize("variant", RELEASED)
+@pytest.mark.parametrize("variant", OTHERS)
 def test_sums_of_pairs_are_the_same_bits_in_every_build(variant, monkeypatch):
     monkeypatch.setenv(variants.ENVIRONMENT, variant)
     points = variants.load().points

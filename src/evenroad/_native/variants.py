@@ -7,12 +7,16 @@ from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
 
+from evenroad._native.digest import SOURCES, digest_of
 from evenroad.errors import NotAvailable, UnknownName
 
 ENVIRONMENT = "EVENROAD_ARCH"
 """Environment variable that names the build to load; without it, the newest that the processor runs."""
 SANITIZED = "sanitized"
 """A build for tests that stops at memory errors and undefined behaviour, loaded only on request: `make sanitize`."""
+
+REMEDY = "run `make native` in a clone, or `pip install .`"
+"""What a build that is missing takes."""
 
 
 def module_name(variant: str) -> str:
@@ -23,13 +27,13 @@ def module_name(variant: str) -> str:
 def usable() -> tuple[str, ...]:
     """Return the installed builds that this processor runs, the newest instruction set last."""
     try:
-        cpu = import_module("evenroad._native._cpu")
+        runnable = import_module("evenroad._native._cpu").runnable()
     except ImportError as error:
-        raise NotAvailable(
-            "the native kernel is not built for this Python: run `make native` in a clone, or `pip install .`"
-            f" ({error})"
-        ) from error
-    return tuple(each for each in (SANITIZED, *cpu.runnable()) if find_spec(module_name(each)) is not None)
+        raise NotAvailable(f"the native kernel is not built for this Python: {REMEDY} ({error})") from error
+    found = tuple(each for each in (SANITIZED, *runnable) if find_spec(module_name(each)) is not None)
+    if not found:
+        raise NotAvailable(f"the native kernel is built for other processors than this, {runnable[-1]}: {REMEDY}")
+    return found
 
 
 def load() -> ModuleType:
@@ -38,4 +42,8 @@ def load() -> ModuleType:
     wanted = os.environ.get(ENVIRONMENT) or names[-1]
     if wanted not in names:
         raise UnknownName.among(f"instruction set in {ENVIRONMENT}", wanted, names)
-    return import_module(module_name(wanted))
+    module = import_module(module_name(wanted))
+    # A clone has the sources beside its builds, an installed wheel has not.
+    if os.path.isdir(SOURCES) and digest_of(SOURCES) != module.SOURCES:
+        raise NotAvailable(f"the native kernel {wanted} is built from other sources than {SOURCES}: run `make native`")
+    return module

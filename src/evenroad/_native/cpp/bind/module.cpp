@@ -5,6 +5,7 @@
 
 #include "bind/parts.hpp"
 #include "common/time_limit.hpp"
+#include "digest.hpp"
 
 namespace nb = nanobind;
 
@@ -33,6 +34,7 @@ NB_MODULE(EVENROAD_MODULE, module) {
   nb::set_leak_warnings(false);
   nb::register_exception_translator(translate);
   module.attr("VARIANT") = EVENROAD_VARIANT;
+  module.attr("SOURCES") = EVENROAD_SOURCES;
   evenroad::bind::add_certificates(module);
   evenroad::bind::add_drive(module);
   evenroad::bind::add_picture(module);
