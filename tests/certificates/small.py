@@ -22,9 +22,9 @@ def sources_in(folder, scene, urdf=URDF):
     return Sources(folder / "arm.urdf", folder / "scene.yaml")
 
 
-def certificate_in(folder, scene, path, urdf=URDF, **of_world):
+def certificate_in(folder, scene, path, **of_world):
     """Return sources and certificate of a path that nobody has planned."""
-    sources = sources_in(folder, scene, urdf)
+    sources = sources_in(folder, scene)
     read = er.load_scene(sources.scene)
     world = er.ArmWorld(er.robot.in_scene(er.load_robot(sources.robot), read), read, **of_world)
     certify(world, np.array(path, dtype=float), sources, folder / "arm.cert")

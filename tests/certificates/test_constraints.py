@@ -17,7 +17,7 @@ from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import main, verify
 from evenroad_verify.errors import Refused
 from tests.certificates.checker_in_c import ManyChecks, program
-from tests.certificates.small import URDF, certificate_in, inputs_of
+from tests.certificates.small import certificate_in, inputs_of
 from tests.certificates.written import box_reach, joined, parts_of
 from tests.robots.oracle import link_poses
 
@@ -133,11 +133,9 @@ def test_both_commands_print_the_same_of_a_constraint(kept, tmp_path, capsys):
     ("answers", "holds"), [((3,), True), ((0, 3, 3), True), ((1, 3, 3), False), ((2, 3, 3), False)]
 )
 def test_a_constraint_has_no_node_that_could_be_halved(answers, holds, tmp_path, many):
-    two = URDF.replace(
-        "<collision>", '<collision><geometry><sphere radius="0.1"/></geometry></collision><collision>', 1
-    )
-    scene = "obstacles:\n  post: {shape: sphere, radius: 0.1, xyz: [0.0, 2.0, 0.0]}\n"
-    sources, data = certificate_in(tmp_path, scene, [[-0.4], [0.0]], two)
+    post = "{{shape: sphere, radius: 0.1, xyz: [0.0, {}, 0.0]}}"
+    scene = f"obstacles:\n  one: {post.format(2.0)}\n  two: {post.format(-2.0)}\n"
+    sources, data = certificate_in(tmp_path, scene, [[-0.4], [0.0]])
     assert many.read(sources.robot, sources.scene) == 0
     lines, waypoints, packed, directions = parts_of(data)
     count = len(read_certificate(data).answers)
