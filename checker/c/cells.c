@@ -6,7 +6,7 @@ static const double OUTSIDE = 0.001; /* by how much a cell may miss a configurat
 
 enum { MOST_FACES = 1 << 25 };
 
-static bool holds(const Axes* axes, const Cell* cell, const double* point) {
+bool holds(const Axes* axes, const Cell* cell, const double* point) {
   for (size_t i = 0; i < axes->count; ++i) {
     const double* range = axes->range[i];
     double at = (point[axes->columns[i]] - range[0]) / (range[1] - range[0]) * UNITS;
@@ -78,21 +78,14 @@ static void join_neighbours(const Axes* axes, const Cell* open, size_t count, si
   }
 }
 
-void shut_off(const Axes* axes, const Cell* open, size_t count, const Certificate* certificate, bool* shown) {
+bool* reached_from(const double* start, const Axes* axes, const Cell* open, size_t count) {
   size_t* group = take(count + 1, sizeof *group);
-  bool *reached = take(count + 1, sizeof *reached), started = false;
+  bool *begun = take(count + 1, sizeof *begun), *reached = take(count + 1, sizeof *reached), any = false;
   join_neighbours(axes, open, count, group);
   for (size_t i = 0; i < count; ++i) {
-    if (!holds(axes, open + i, certificate->values)) continue;
-    reached[first_of(group, i)] = started = true;
+    if (holds(axes, open + i, start)) begun[first_of(group, i)] = any = true;
   }
-  if (!started) fail(REFUSED, "the start is in no open cell");
-  for (size_t goal = 0; goal < certificate->goals; ++goal) {
-    const double* point = certificate->values + (goal + 1) * certificate->joint_count;
-    bool meets = false;
-    for (size_t i = 0; i < count && !meets; ++i) {
-      meets = reached[first_of(group, i)] && holds(axes, open + i, point);
-    }
-    shown[goal] = shown[goal] || !meets;
-  }
+  if (!any) fail(REFUSED, "the start is in no open cell");
+  for (size_t i = 0; i < count; ++i) reached[i] = begun[first_of(group, i)];
+  return reached;
 }

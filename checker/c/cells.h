@@ -18,8 +18,11 @@ typedef struct {
   bool endless[MOST_COLUMNS];
 } Axes;
 
-/* Mark the goals that are in no open cell which the start reaches. */
-void shut_off(const Axes* axes, const Cell* open, size_t count, const Certificate* certificate, bool* shown);
+/* Whether a cell holds a configuration. */
+bool holds(const Axes* axes, const Cell* cell, const double* point);
+
+/* For each open cell, whether the start reaches it; refuses a start that is in none. */
+bool* reached_from(const double* start, const Axes* axes, const Cell* open, size_t count);
 
 /* What proves that there is no path. */
 typedef struct {

@@ -70,20 +70,30 @@ static Vector unit_of(char** text) {
   return scaled(1 / length(vector), vector);
 }
 
+/* A quaternion, and the pose that is turned by it. */
+static Pose pose_of(char** text, double xyzw[4], Vector at) {
+  double square = 0;
+  for (int i = 0; i < 4; ++i) xyzw[i] = number_of(next_word(text)), square += xyzw[i] * xyzw[i];
+  if (!(square > 1e-18)) fail(REFUSED, "a quaternion of length 0");
+  return pose_of_quaternion(xyzw, at);
+}
+
+static double positive(char** text) {
+  double number = number_of(next_word(text));
+  if (!(number >= 0)) fail(REFUSED, "a constraint, or a goal, within less than 0");
+  return number;
+}
+
 /* Read a constraint, and put it behind all others of its kind. */
 static void add_kept(Certificate* to, char* text, bool is_axis) {
-  Kept kept = {.is_axis = is_axis, .within = number_of(next_word(&text)), .xyzw = {0, 0, 0, 1}, .box = identity()};
-  if (!(kept.within >= 0)) fail(REFUSED, "a constraint within less than 0");
+  Kept kept = {.is_axis = is_axis, .within = positive(&text), .box = identity()};
   if (is_axis) {
     kept.part = unit_of(&text);
     kept.low = kept.high = unit_of(&text);
     kept.limit = 2 * sin(fmin(kept.within, PI) / 2);
   } else {
     kept.part = vector_of(&text);
-    double square = 0;
-    for (int i = 0; i < 4; ++i) kept.xyzw[i] = number_of(next_word(&text)), square += kept.xyzw[i] * kept.xyzw[i];
-    if (!(square > 1e-18)) fail(REFUSED, "a quaternion of length 0");
-    kept.box = pose_of_quaternion(kept.xyzw, (Vector){0, 0, 0});
+    kept.box = pose_of(&text, kept.xyzw, (Vector){0, 0, 0});
     kept.low = vector_of(&text);
     kept.high = vector_of(&text);
     kept.limit = kept.within;
@@ -92,6 +102,15 @@ static void add_kept(Certificate* to, char* text, bool is_axis) {
   size_t at = is_axis ? to->axis_count++ : to->kept_count;
   memmove(to->kept + at + 1, to->kept + at, (to->kept_count++ - at) * sizeof kept);
   to->kept[at] = kept;
+}
+
+static void add_pose(Certificate* to, char* text, bool turned) {
+  PoseGoal goal = {.turned = turned, .near = positive(&text), .pose = identity()};
+  if (turned) goal.tilt = positive(&text);
+  goal.pose.at = vector_of(&text);
+  if (turned) goal.pose = pose_of(&text, goal.xyzw, goal.pose.at);
+  goal.link = text;
+  to->poses[to->pose_count++] = goal;
 }
 
 static void add_named(Named* list, size_t* count, Named one) {
@@ -163,6 +182,8 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
     to->joints[to->joint_count++] = value;
   } else if (!to->of_no_path && (!strcmp(line, "axis") || !strcmp(line, "point"))) {
     add_kept(to, value, *line == 'a');
+  } else if (to->of_no_path && (!strcmp(line, "position") || !strcmp(line, "pose"))) {
+    add_pose(to, value, !strcmp(line, "pose"));
   } else if (!strcmp(line, "cells") && to->of_no_path) {
     to->trees[to->tree_count++] = tree_of(value);
   } else if (!strcmp(line, "held")) {
@@ -184,7 +205,8 @@ static void require_counts(const Certificate* certificate, const bool seen[ONCE]
   if (!certificate->joint_count) fail(REFUSED, "no joint is named");
   if (certificate->of_no_path) {
     if (seen[TOLERANCE]) fail(REFUSED, "a tolerance of no path");
-    if (!certificate->goals || !certificate->tree_count) fail(REFUSED, "no goal, or no cells");
+    if (!(certificate->goals + certificate->pose_count) || !certificate->tree_count)
+      fail(REFUSED, "no goal, or no cells");
   } else {
     if (certificate->degree != 1 && certificate->degree != 2) fail(REFUSED, "degree must be 1 or 2");
     if (!certificate->motions || certificate->motions >= MOST_MOTIONS) fail(REFUSED, "no motion, or too many");
@@ -212,6 +234,7 @@ static void read_header(Certificate* to, char* text) {
   to->held = take(lines, sizeof *to->held);
   to->padding = take(lines, sizeof *to->padding);
   to->trees = take(lines, sizeof *to->trees);
+  to->poses = take(lines, sizeof *to->poses);
   to->kept = take(lines + 1, sizeof *to->kept);
   bool seen[ONCE] = {false};
   while (*text) {

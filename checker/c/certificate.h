@@ -19,6 +19,14 @@ typedef struct {
   Pose box;
 } Kept;
 
+/* A goal that any posture reaches: the origin of a link near a point and, if it is turned, near a rotation. */
+typedef struct {
+  const char* link;
+  bool turned;
+  double near, tilt, xyzw[4];
+  Pose pose;
+} PoseGoal;
+
 /* Cells of some columns of the points, and an answer to each; of a certificate that there is no path. */
 typedef struct {
   size_t *columns, column_count, answer_count;
@@ -39,7 +47,8 @@ typedef struct {
   const uint8_t *answers, *directions, *carried;
   size_t carried_size;
   Tree* trees; /* of a certificate that there is no path; its points are the start and the goals */
-  size_t goals, ball_count, witness_count, tree_count;
+  PoseGoal* poses;
+  size_t goals, pose_count, ball_count, witness_count, tree_count;
   const uint8_t *balls, *witnesses;
   const char *robot, *scene; /* digests of the files of which carried ones were made, or NULL */
 } Certificate;

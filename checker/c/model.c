@@ -111,7 +111,7 @@ static void walk(Model* model) {
 
 const Place* place_of_link(const Model* model, const char* link) {
   size_t number = link_named(model->inputs, link);
-  if (number == NONE) fail(REFUSED, "a constraint of no link: %.60s", link);
+  if (number == NONE) fail(REFUSED, "the robot has no link %.60s", link);
   return model->of_link + number;
 }
 
@@ -199,12 +199,13 @@ static void require_bounded(const Model* model) {
     chain[i] = chain[model->frames[i].parent] + model->frames[i].length;
     factor = fmax(factor, fabs(model->frames[i].multiplier));
   }
-  for (size_t i = 0; i < model->pair_count; ++i) {
-    const Node *first = model->pairs[i].first, *second = model->pairs[i].second;
-    double reach = chain[first->frame] + first->reach;
-    if (model->pairs[i].b == NONE) robot = fmax(robot, reach);
-    farthest = fmax(farthest, fmax(reach, chain[second->frame] + second->reach));
+  for (size_t i = 0; i < model->body_count; ++i) {
+    const Node* node = model->bodies[i].node;
+    double reach = chain[node->frame] + node->reach;
+    if (node->frame) robot = fmax(robot, reach);
+    farthest = fmax(farthest, reach);
   }
+  for (size_t i = 0; i < model->inputs->obstacle_count; ++i) farthest = fmax(farthest, reach_of(model->obstacles + i));
   for (size_t i = 0; i < certificate->kept_count; ++i) {
     const Place* place = place_of_link(model, certificate->kept[i].link);
     Vector point = placed(&place->pose, certificate->kept[i].part);

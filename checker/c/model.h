@@ -58,7 +58,7 @@ typedef struct {
 /* The range of a column in the URDF and the scene; false if it has none. */
 bool range_of(const Inputs* inputs, const Certificate* certificate, size_t column, double range[2]);
 
-/* Where the link of a constraint is; refuses a link that there is not. */
+/* Where the link of a constraint or goal is; refuses a link that there is not. */
 const Place* place_of_link(const Model* model, const char* link);
 
 Model* model_of(const Inputs* inputs, const Certificate* certificate);

@@ -289,6 +289,73 @@ static Cell* open_cells(Checker* checker, const Tree* tree, size_t target_count,
   return open;
 }
 
+/* Tell whether a joint is of the columns of the cells. */
+static bool is_known(const Checker* checker, size_t frame) {
+  for (size_t i = 0; i < checker->axes.count; ++i) {
+    if (checker->axes.columns[i] == checker->model->frames[frame].column) return true;
+  }
+  return false;
+}
+
+/* How far a joint slides at most; nothing bounds one without limits. */
+static double most_slide(const Model* model, const Frame* frame) {
+  double range[2];
+  if (!frame->slides) return 0;
+  if (!range_of(model->inputs, model->certificate, frame->column, range)) return INFINITY;
+  return fmax(fabs(frame->multiplier * range[0] + frame->offset), fabs(frame->multiplier * range[1] + frame->offset));
+}
+
+/* Tell whether no posture reaches a goal from a cell, in whose middle the frames are: the first joint on the way to the
+   link that is of no column is too far away for all that follow, or too near. */
+static bool is_beyond(const Checker* checker, const Cell* cell, const PoseGoal* goal) {
+  const Frame* frames = checker->model->frames;
+  const Place* place = place_of_link(checker->model, goal->link);
+  size_t first = NONE, last = place->frame;
+  for (size_t k = last; k; k = frames[k].parent) {
+    if (!is_known(checker, k)) first = k;
+  }
+  Vector arm = place->pose.at, target = goal->pose.at, point = goal->turned ? (Vector){0, 0, 0} : arm;
+  double near = goal->near, most = 0, longest = 0, moves = 0;
+  if (goal->turned) {
+    near += goal->tilt * length(arm);
+    target = difference(target, turned(&goal->pose, turned_in(&place->pose, arm)));
+  }
+  if (first != NONE) {
+    longest = goal->turned ? 0 : length(arm);
+    most = longest + most_slide(checker->model, frames + first);
+    for (size_t k = last; k != first; k = frames[k].parent) {
+      double bar = length(frames[k].fixed.at);
+      longest = fmax(longest, bar);
+      most += bar + most_slide(checker->model, frames + k);
+    }
+    last = frames[first].parent;
+    point = frames[first].fixed.at;
+  }
+  point = placed(&checker->moved[last].pose, point);
+  for (size_t k = last; k; k = frames[k].parent) moves = moved_by(checker, cell, k, point, moves);
+  double away = length(difference(point, target)), least = fmax(0, 2 * longest - most);
+  return away - moves > most + near + LEAST || away + moves < least - near - LEAST;
+}
+
+/* Mark the goals, configurations before poses, that the start does not reach in the open cells of a tree. */
+static void shut_off(Checker* checker, const Cell* open, size_t count, bool* shown) {
+  const Certificate* certificate = checker->model->certificate;
+  size_t goals = certificate->goals, all = goals + certificate->pose_count;
+  const bool* reached = reached_from(certificate->values, &checker->axes, open, count);
+  bool* meets = take(all, sizeof *meets);
+  for (size_t i = 0; i < count; ++i) {
+    if (!reached[i]) continue;
+    if (all > goals) place_middle(checker, open + i);
+    for (size_t goal = 0; goal < all; ++goal) {
+      const double* point = certificate->values + (goal + 1) * certificate->joint_count;
+      bool is_pose = goal >= goals;
+      meets[goal] = meets[goal] || (is_pose ? !is_beyond(checker, open + i, certificate->poses + (goal - goals))
+                                            : holds(&checker->axes, open + i, point));
+    }
+  }
+  for (size_t goal = 0; goal < all; ++goal) shown[goal] = shown[goal] || !meets[goal];
+}
+
 NoPath verify_no_path(const Inputs* inputs, const Certificate* certificate) {
   if (memcmp(certificate->digest, inputs->digest, sizeof inputs->digest) != 0) {
     fail(REFUSED, "robot, SRDF, scene or meshes are not the files that it was written for");
@@ -302,15 +369,16 @@ NoPath verify_no_path(const Inputs* inputs, const Certificate* certificate) {
   checker.moved[0].pose = identity();
   NoPath found = {.model = model, .smallest = INFINITY, .used = take(bodies * bodies + 1, sizeof(bool))};
   found.columns = take(certificate->joint_count, sizeof(bool));
-  bool* shown = take(certificate->goals, sizeof *shown);
+  size_t goals = certificate->goals + certificate->pose_count;
+  bool* shown = take(goals, sizeof *shown);
   for (size_t i = 0; i < certificate->tree_count; ++i) {
     size_t open_count = 0;
     checker.axes = axes_of(model, certificate->trees + i);
     for (size_t k = 0; k < checker.axes.count; ++k) found.columns[checker.axes.columns[k]] = true;
     const Cell* open = open_cells(&checker, certificate->trees + i, target_count, &found, &open_count);
-    shut_off(&checker.axes, open, open_count, certificate, shown);
+    shut_off(&checker, open, open_count, shown);
   }
-  for (size_t i = 0; i < certificate->goals; ++i) {
+  for (size_t i = 0; i < goals; ++i) {
     if (!shown[i]) fail(REFUSED, "a way to goal %zu is open", i);
   }
   return found;

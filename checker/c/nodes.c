@@ -58,6 +58,12 @@ Solid solid_of(const Shape* shape, const Pose* pose) {
   return solid;
 }
 
+double reach_of(const Solid* solid) {
+  double farthest = 0;
+  for (size_t i = 0; i < solid->corners * solid->elements; ++i) farthest = fmax(farthest, length(solid->all[i]));
+  return farthest + solid->ball + solid->disc;
+}
+
 /* How far a disc reaches along a direction: its axis is of length 1. */
 static double disc_reach(const Solid* solid, Vector direction) {
   if (solid->disc <= 0) return 0;

@@ -37,6 +37,9 @@ typedef struct Node {
 /* The solid of a shape, where its frame is; without elements if the shape is of no size. */
 Solid solid_of(const Shape* shape, const Pose* pose);
 
+/* The largest distance of a point of a solid from the frame's origin. */
+double reach_of(const Solid* solid);
+
 /* A node of all elements of solids. */
 Node* node_of(Solid** solids, size_t count, size_t frame);
 

@@ -144,13 +144,24 @@ void print_proved(const Proved* proved) {
   if (proved->opened) printf("  what is inside of surfaces with holes: %zu\n", proved->opened);
 }
 
+static void print_pose(const PoseGoal* goal) {
+  const double* q = goal->xyzw;
+  printf("  goal: %s within %g m of ", goal->link, goal->near);
+  print_vector("", goal->pose.at);
+  if (goal->turned) {
+    printf(", turned by the quaternion (%.6g, %.6g, %.6g, %.6g) within %g rad", q[0], q[1], q[2], q[3], goal->tilt);
+  }
+  printf(", however the joints reach it\n");
+}
+
 void print_no_path(const NoPath* shown) {
   const Model* model = shown->model;
   const Certificate* certificate = model->certificate;
   size_t bodies = model->body_count + model->inputs->obstacle_count, pairs = 0;
   printf("PROVED: no path leads from the start to any goal: each one touches something");
   print_distances(certificate);
-  printf("  goals: %zu configurations\n", certificate->goals);
+  if (certificate->goals) printf("  goals: %zu configurations\n", certificate->goals);
+  for (size_t i = 0; i < certificate->pose_count; ++i) print_pose(certificate->poses + i);
   for (size_t i = 0; i < certificate->joint_count; ++i) {
     printf("  %s: from %.6g", certificate->joints[i], certificate->values[i]);
     for (size_t goal = 1; goal <= certificate->goals; ++goal) {

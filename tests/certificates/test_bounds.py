@@ -5,8 +5,8 @@ import pytest
 
 import evenroad as er
 from evenroad_verify.certificate import Certificate
-from evenroad_verify.claim import claim_of, read_inputs
-from evenroad_verify.proof import BOXES, CORNERS, LEAST, ROUNDING, Motions
+from evenroad_verify.claim import LEAST, ROUNDING, claim_of, read_inputs
+from evenroad_verify.proof import BOXES, CORNERS, Motions
 from tests.certificates.small import sources_in
 from tests.certificates.tree import POST, URDF
 from tests.robots.oracle import link_poses

@@ -5,9 +5,11 @@ import subprocess
 import numpy as np
 import pytest
 
+import evenroad as er
+from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import main
 from tests.certificates.checker_in_c import ACCEPTED, ManyChecks, program
-from tests.certificates.no_path import Place, accepts, at, flat_arm, posts
+from tests.certificates.no_path import TIP, Parts, Place, at, flat_arm, posts
 
 MESH = '<mesh filename="bar.stl"/>'
 ENDLESS = flat_arm("continuous")
@@ -19,7 +21,7 @@ def many():
         yield process
 
 
-@pytest.fixture(scope="module", params=["box", "endless", "mesh", "kept"])
+@pytest.fixture(scope="module", params=["box", "endless", "mesh", "kept", "position", "pose"])
 def caught(request, tmp_path_factory):
     """The bar stands between two posts; the goal is beyond one of them."""
     import trimesh
@@ -27,9 +29,14 @@ def caught(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
     trimesh.creation.box((0.5, 0.06, 0.06)).export(folder / "bar.stl")
     places = posts(at(0.7, 0.3), at(-0.7, 0.3), at(0.2, 0.86), at(2.9, 0.3))
-    urdf = {"endless": ENDLESS, "mesh": flat_arm(first=MESH)}.get(request.param)
-    place = Place(folder, places, urdf, clearance=0.01 if request.param == "kept" else 0.0)
-    return place, place.certificate([0.0, 0.3], [[2.0, 0.3], [1.8, 0.1]])
+    with_tip = flat_arm().replace("</robot>", TIP)
+    urdfs = {"endless": ENDLESS, "mesh": flat_arm(first=MESH), "position": with_tip, "pose": with_tip}
+    place = Place(folder, places, urdfs.get(request.param), clearance=0.01 if request.param == "kept" else 0.0)
+    goals, poses = [[2.0, 0.3], [1.8, 0.1]], []
+    if request.param in ("position", "pose"):
+        xy, only = np.array(at(2.0, 0.5)) + at(2.3, 0.4), request.param == "position"
+        goals, poses = [], [er.PoseGoal(er.Pose((*xy, 0.0), rpy=(0.0, 0.0, 2.8)), "tip", position_only=only)]
+    return place, place.certificate([0.0, 0.3], goals, poses)
 
 
 def test_both_commands_print_the_same(caught, capsys):
@@ -48,7 +55,16 @@ def test_both_agree_on_files_in_which_something_was_changed(caught, many):
         other = bytearray(data)
         place_of_change = rng.integers(start if i % 3 else 0, len(data))
         other[place_of_change] = rng.integers(256) if i % 2 else other[place_of_change] ^ (1 << rng.integers(8))
-        said = many.accepts(other)
-        assert said == accepts(bytes(other), place.inputs)
-        accepted += said
+        accepted += many.agrees(other, place.inputs)
     assert 0 < accepted < 120
+
+
+def test_a_robot_that_reaches_beyond_a_plane_is_refused(caught, many):
+    place, data = caught
+    lines = (place.folder / "scene.yaml").read_text(), "  ground: {shape: plane, xyz: [0, 0, %s]}\n"
+    for height, holds in ((-50, True), (-99.5, False)):
+        (place.folder / "deep.yaml").write_text(lines[0] + lines[1] % height)
+        inputs = read_inputs(place.sources.robot, place.folder / "deep.yaml", None, {})
+        assert many.read(place.sources.robot, place.folder / "deep.yaml") == ACCEPTED
+        parts = Parts.of(data).saying("inputs", inputs.digest)
+        assert many.agrees(parts.data, inputs) is holds

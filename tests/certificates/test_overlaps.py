@@ -9,9 +9,9 @@ from evenroad.errors import NotAvailable
 from evenroad.geometry import Pose
 from evenroad_verify.cells import Ranges
 from evenroad_verify.certificate import Certificate
-from evenroad_verify.claim import read_inputs
+from evenroad_verify.claim import Body, read_inputs
 from evenroad_verify.frames import frames_of
-from evenroad_verify.overlaps import Body, Places, Spot, between, is_ball_inside, solid_of
+from evenroad_verify.overlaps import Places, Spot, between, is_ball_inside, solid_of
 from evenroad_verify.shapes import primitive, surface
 from tests.certificates.no_path import LINK, Parts, Place, accepts, at, flat_arm, posts
 from tests.certificates.small import sources_in

@@ -73,6 +73,11 @@ class Certificate:
     scene: str | None = None
     carried: tuple[bytes, ...] = ()
 
+    @property
+    def start(self) -> Floats:
+        """The first configuration."""
+        return np.asarray(self.curves[0, 0])
+
 
 def read_certificate(data: bytes) -> Certificate:
     """Return the certificate that some bytes are; Refused for any others."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
 
 from evenroad_verify.certificate import Certificate
-from evenroad_verify.errors import Pose, demand, require
+from evenroad_verify.errors import Floats, demand, require
 from evenroad_verify.files import Files
 from evenroad_verify.frames import Frames, frames_of
 from evenroad_verify.nodes import Nodes
@@ -17,7 +17,10 @@ from evenroad_verify.robot import Robot, read_robot
 from evenroad_verify.scene import GROUND, Scene, read_scene
 from evenroad_verify.shapes import Shape
 
-Places: TypeAlias = dict[str, tuple[int, Pose]]
+LEAST = 1e-9
+"""What a computed gap must exceed, beyond the distance that is to be kept [m]."""
+ROUNDING = 2.0**-46
+"""Times the joints of a chain, reach and the largest joint value, a bound of the error of a computed gap."""
 ENDLESS = 1000.0
 """A range of more than this is none [rad or m]."""
 BEYOND = 1e-5
@@ -84,72 +87,89 @@ def read_inputs(
     return Inputs(read, around, files.digest, tuple(files.taken))
 
 
+@dataclass(frozen=True)
+class Body:
+    """Shapes of one name, in a frame: a link, what is attached to one, or an obstacle."""
+
+    name: str
+    frame: int
+    shapes: list[Shape]
+    is_obstacle: bool
+
+
 def claim_of(inputs: Inputs, certificate: Certificate) -> Claim:
     """Return what a certificate must prove about its inputs."""
-    robot, scene = inputs.robot, inputs.scene
-    frames, nodes = frames_of(robot, certificate), Nodes()
-    bodies, place = bodies_of(inputs, frames)
-    demand(certificate.padding.keys() <= bodies.keys(), "a link is padded that has no shape")
-    demand(
-        {each.link for each in certificate.kept} <= frames.place.keys(),
-        "a constraint is about a link that the robot lacks",
-    )
-    require_limits(frames, scene, certificate)
-    around = _around(frames, nodes, bodies, place, scene, certificate)
-    whole = {name: nodes.whole(place[name][0], shapes) for name, shapes in bodies.items()}
-    touching = may_touch(robot, scene, bodies)
-    names = list(bodies)
+    frames, nodes = frames_of(inputs.robot, certificate), Nodes()
+    demand({each.link for each in certificate.kept} <= frames.place.keys(), "a constraint is about no link")
+    bodies = bodies_of(inputs, frames, certificate)
+    require_limits(ranges_of(inputs, frames, certificate), certificate)
+    require_bounded(inputs, frames, bodies, certificate)
+    links = [body for body in bodies if not body.is_obstacle]
+    around = _around(nodes, bodies, inputs.scene, certificate)
+    whole = [nodes.whole(body.frame, body.shapes) for body in links]
+    touching = may_touch(inputs, bodies)
     among = [
-        Pair(whole[first], whole[second], 0.0, (first, second))
-        for i, first in enumerate(names)
-        for second in names[i + 1 :]
-        if place[first][0] != place[second][0] and frozenset((first, second)) not in touching
+        Pair(whole[i], whole[k], 0.0, (links[i].name, links[k].name))
+        for i, k in itertools.combinations(range(len(links)), 2)
+        if links[i].frame != links[k].frame and frozenset((links[i].name, links[k].name)) not in touching
     ]
-    return Claim(frames, nodes, (*around, *among), silent(robot, scene, bodies, place, certificate))
+    return Claim(frames, nodes, (*around, *among), silent(inputs, bodies, certificate))
 
 
-def bodies_of(inputs: Inputs, frames: Frames) -> tuple[dict[str, list[Shape]], Places]:
-    """Return the shapes of links and of what is held, each in its frame, and the places of all links in frames."""
-    robot, bodies, place = inputs.robot, dict[str, list[Shape]](), dict(frames.place)
-    for link in robot.links:
-        if link in robot.shapes:
-            bodies[link] = [shape.at(place[link][1]) for shape in robot.shapes[link]]
+def bodies_of(inputs: Inputs, frames: Frames, certificate: Certificate) -> list[Body]:
+    """Return links with shapes, what is attached, and obstacles; Refused where the certificate pads another one."""
+    bodies = [
+        Body(
+            link, frames.place[link][0], [shape.at(frames.place[link][1]) for shape in inputs.robot.shapes[link]], False
+        )
+        for link in inputs.robot.links
+        if link in inputs.robot.shapes
+    ]
     for held in inputs.scene.held:
-        require(held.link in place and held.name not in place, f"{held.name} is held by no link, or has a link's name")
-        place[held.name] = place[held.link]
-        bodies[held.name] = [shape.at(place[held.link][1]) for shape in held.shapes]
-    return bodies, place
+        known = held.link in frames.place and held.name not in frames.place
+        require(known, f"{held.name} is held by no link, or has a link's name")
+        frame, pose = frames.place[held.link]
+        bodies.append(Body(held.name, frame, [shape.at(pose) for shape in held.shapes], False))
+    demand(certificate.padding.keys() <= {body.name for body in bodies}, "a link is padded that has no shape")
+    return bodies + [Body(each.name, 0, list(each.shapes), True) for each in inputs.scene.obstacles]
 
 
-def _around(
-    frames: Frames, nodes: Nodes, bodies: dict[str, list[Shape]], place: Places, scene: Scene, certificate: Certificate
-) -> list[Pair]:
-    """Return pairs of bodies and obstacles: bodies of a frame with the same allowances are one node."""
-    groups: dict[tuple[int, frozenset[str], float], list[str]] = {}
-    for name in bodies:
-        frame = place[name][0]
-        touched = frozenset(obstacle for obstacle, body in scene.allowed if body == name)
-        groups.setdefault((frame, touched, certificate.padding.get(name, 0.0)), []).append(name)
-    pairs, obstacles = [], dict[frozenset[str], int]()
-    for (frame, touched, padding), names in groups.items():
-        others = [each for each in scene.obstacles if each.name not in touched]
-        if frame == 0 or not others:
-            continue
-        if touched not in obstacles:
-            obstacles[touched] = nodes.whole(0, [shape for each in others for shape in each.shapes])
-        node = nodes.whole(frame, [shape for name in names for shape in bodies[name]])
-        keep = certificate.clearance + padding
-        pairs.append(Pair(node, obstacles[touched], keep, (" and ".join(names), "the obstacles")))
+def require_bounded(inputs: Inputs, frames: Frames, bodies: list[Body], certificate: Certificate) -> None:
+    """Raise Refused if rounding could exceed `LEAST` on the curves, or if the robot reaches beyond a plane."""
     _, out = frames.far(certificate.curves, certificate.tolerance)
-    reach = max((out[nodes.frame[node]] + nodes.reach[node] for pair in pairs for node in (pair.first,)), default=0.0)
-    planes = [each.above for each in scene.obstacles if each.above is not None]
-    demand(reach + max(planes, default=0.0) < GROUND or not planes, "the robot reaches beyond a plane")
+    reach = np.array([out[body.frame] + max(shape.reach for shape in body.shapes) for body in bodies])
+    robot = max((far for far, body in zip(reach, bodies, strict=True) if body.frame), default=0.0)
+    planes = [each.above for each in inputs.scene.obstacles if each.above is not None]
+    demand(not planes or robot + max(planes) < GROUND, "the robot reaches beyond a plane")
+    places = [(frames.place[each.link], each.part) for each in certificate.kept if not each.is_axis]
+    arms = [out[frame] + np.linalg.norm(turn @ point + shift) for (frame, (turn, shift)), point in places]
+    largest = 1.0 + np.abs(certificate.curves).max() * max(1.0, float(np.abs(frames.factor).max()))
+    error = ROUNDING * inputs.robot.depth * max(reach.max(initial=0.0), *arms, 0.0) * largest
+    demand(error < LEAST, "the robot is too large for double precision")
+
+
+def _around(nodes: Nodes, bodies: list[Body], scene: Scene, certificate: Certificate) -> list[Pair]:
+    """Return pairs of bodies and obstacles: bodies of a frame with the same allowances are one node."""
+    groups: dict[tuple[int, frozenset[str], float], list[Body]] = {}
+    for body in bodies:
+        touched = frozenset(obstacle for obstacle, name in scene.allowed if name == body.name)
+        if body.frame and not touched >= {each.name for each in scene.obstacles}:
+            groups.setdefault((body.frame, touched, certificate.padding.get(body.name, 0.0)), []).append(body)
+    pairs, obstacles = [], dict[frozenset[str], int]()
+    for (frame, touched, padding), group in groups.items():
+        if touched not in obstacles:
+            left = [each for each in scene.obstacles if each.name not in touched]
+            obstacles[touched] = nodes.whole(0, [shape for each in left for shape in each.shapes])
+        node = nodes.whole(frame, [shape for body in group for shape in body.shapes])
+        names = " and ".join(body.name for body in group), "the obstacles"
+        pairs.append(Pair(node, obstacles[touched], certificate.clearance + padding, names))
     return pairs
 
 
-def may_touch(robot: Robot, scene: Scene, bodies: dict[str, list[Shape]]) -> set[frozenset[str]]:
+def may_touch(inputs: Inputs, bodies: list[Body]) -> set[frozenset[str]]:
     """Return pairs that may touch: those of the SRDF or, without any there, neighbours; and what a held body may."""
-    touching = {frozenset((held.name, link)) for held in scene.held for link in (held.link, *held.touches)}
+    robot, names = inputs.robot, {body.name for body in bodies if not body.is_obstacle}
+    touching = {frozenset((held.name, link)) for held in inputs.scene.held for link in (held.link, *held.touches)}
     if robot.disabled is not None:
         return touching | robot.disabled
     above = {joint.child: joint for joint in robot.joints}
@@ -158,38 +178,46 @@ def may_touch(robot: Robot, scene: Scene, bodies: dict[str, list[Shape]]) -> set
         while link in above:
             moving += above[link].kind != "fixed"
             link = above[link].parent
-            if link in robot.shapes:
+            if link in names:
                 touching |= {frozenset((name, link))} if moving == 1 else set()
                 break
     return touching
 
 
-def require_limits(frames: Frames, scene: Scene, certificate: Certificate) -> None:
-    """Raise Refused if a control point leaves the limits of a joint, or those of the scene."""
-    limits = {joint.name: (joint.lower, joint.upper) for joint in frames.joints}
+def ranges_of(inputs: Inputs, frames: Frames, certificate: Certificate) -> Floats:
+    """Return how far the joints of a certificate may go, (joints, 2): infinitely far those without limits."""
+    joints, ranges = {joint.name: joint for joint in frames.joints}, []
+    for name in certificate.joints:
+        low, high = -np.inf, np.inf
+        for least, most in ((joints[name].lower, joints[name].upper), inputs.scene.limits.get(name, (low, high))):
+            if most - least <= ENDLESS:
+                low, high = max(low, least - BEYOND), min(high, most + BEYOND)
+        ranges.append((low, high))
+    return np.array(ranges)
+
+
+def require_limits(ranges: Floats, certificate: Certificate) -> None:
+    """Raise Refused if a control point leaves the range of a joint."""
+    within = (certificate.curves >= ranges[:, 0]) & (certificate.curves <= ranges[:, 1])
     for column, name in enumerate(certificate.joints):
-        for low, high in (limits[name], scene.limits.get(name, (-np.inf, np.inf))):
-            some = certificate.curves[:, :, column]
-            within = some.min() >= low - BEYOND and some.max() <= high + BEYOND
-            demand(within or high - low > ENDLESS, f"{name} leaves its limits")
+        demand(within[:, :, column].all(), f"{name} leaves its limits")
 
 
-def silent(
-    robot: Robot, scene: Scene, bodies: dict[str, list[Shape]], place: Places, certificate: Certificate
-) -> tuple[str, ...]:
+def silent(inputs: Inputs, bodies: list[Body], certificate: Certificate) -> tuple[str, ...]:
     """Return lines about what is not claimed."""
-    disabled = robot.disabled
+    disabled, links = inputs.robot.disabled, [body for body in bodies if not body.is_obstacle]
     held = ", ".join(f"{name} {value:g}" for name, value in certificate.held.items())
+    shaped = {body.name for body in links}
     lines = {
-        "links without collision shapes": ", ".join(link for link in robot.links if link not in bodies),
+        "links without collision shapes": ", ".join(link for link in inputs.robot.links if link not in shaped),
         "links that no joint of the path moves, with obstacles": ", ".join(
-            name for name in bodies if place[name][0] == 0
+            body.name for body in links if body.frame == 0
         ),
         "links that are fixed to each other": "with each other",
         "pairs of links": f"{len(disabled)} that the SRDF disables"
         if disabled is not None
         else "neighbours, as no SRDF disables any",
-        "allowed contacts": ", ".join(f"{obstacle} with {link}" for obstacle, link in sorted(scene.allowed)),
+        "allowed contacts": ", ".join(f"{obstacle} with {link}" for obstacle, link in sorted(inputs.scene.allowed)),
         "that other joints are where they are held": held or "at 0",
         "that what the certificate carries is the robot, or the scene, that is meant": ", ".join(
             name for name in ("robot", "scene") if getattr(certificate, name) is not None

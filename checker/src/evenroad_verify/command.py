@@ -38,7 +38,7 @@ def verify(certificate: bytes, inputs: Inputs) -> Proved:
     demand(read.inputs == inputs.digest, "robot, SRDF, scene or meshes are not the files that it was written for")
     with np.errstate(all="ignore"):
         claim = claim_of(inputs, read)
-        least, tasks = prove(claim, read, inputs.robot.depth)
+        least, tasks = prove(claim, read)
         return Proved(read, claim, least, require_outside(claim, read, tasks))
 
 
@@ -85,12 +85,15 @@ def _lines_of_no_path(shown: Shown) -> list[str]:
     """Return what is printed of an accepted certificate of no path."""
     terminals = shown.certificate.terminals
     read = shown.certificate
-    goals = [f"{read.goals} configurations"] if read.goals else []
-    goals += [f"{each.link} at {np.round(each.point, 6).tolist()}, however it is reached" for each in read.poses]
     lines = [f"PROVED: no path leads from the start to any goal: each one touches something{_kept(terminals)}"]
-    lines.append(f"  goals: {', '.join(goals)}")
-    for name, *values in zip(terminals.joints, terminals.curves[0, 0], *terminals.curves[: read.goals, 2], strict=True):
-        lines.append(f"  {name}: from {values[0]:.6g} to {' or '.join(f'{value:.6g}' for value in values[1:])}")
+    lines += [f"  goals: {read.goals} configurations"] if read.goals else []
+    for each in read.poses:
+        turned = "" if each.xyzw is None else f", turned by the quaternion {_row(each.xyzw)} within {each.tilt:g} rad"
+        near = f"{each.link} within {each.near:g} m of {_row(each.point)}"
+        lines.append(f"  goal: {near}{turned}, however the joints reach it")
+    for name, start, goals in zip(terminals.joints, terminals.start, terminals.curves[: read.goals, 2].T, strict=True):
+        to = " to " + " or ".join(f"{value:.6g}" for value in goals) if read.goals else ""
+        lines.append(f"  {name}: from {start:.6g}{to}")
     lines.append(f"  whatever other joints than these do: {', '.join(shown.joints)}")
     lines.append(f"  {shown.blocked} cells are blocked; smallest overlap of a cell: {shown.least:.3g} m")
     lines.append(f"pairs that block the way ({len(shown.pairs)}):")

@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from evenroad_verify.cells import Cells, Ranges, cells_of, reached
 from evenroad_verify.certificate import FARTHEST, Certificate, count_of, head_of, read_file, tables_of
-from evenroad_verify.claim import BEYOND, ENDLESS, Inputs, bodies_of, may_touch, require_limits, silent
+from evenroad_verify.claim import (
+    Body,
+    Inputs,
+    bodies_of,
+    may_touch,
+    ranges_of,
+    require_bounded,
+    require_limits,
+    silent,
+)
 from evenroad_verify.errors import Bools, Floats, Ints, demand
 from evenroad_verify.frames import Frames, frames_of
-from evenroad_verify.overlaps import (
-    LEAST,
-    Body,
-    Places,
-    Solid,
-    Spot,
-    between,
-    is_ball_inside,
-    require_blocked,
-    solid_of,
-)
+from evenroad_verify.overlaps import Places, Solid, Spot, between, is_ball_inside, require_blocked, solid_of
 from evenroad_verify.poses import PoseGoal, are_beyond, read_poses
-from evenroad_verify.proof import ROUNDING
-from evenroad_verify.robot import Joint
 
 MAGIC = b"evenroad certificate of no path 1\n"
 _AT_ONCE = 1 << 14
@@ -116,15 +113,16 @@ def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
     demand(terminals.inputs == inputs.digest, "robot, SRDF, scene or meshes are not the files that it was written for")
     with np.errstate(all="ignore"):
         frames = frames_of(inputs.robot, terminals)
-        shapes, place = bodies_of(inputs, frames)
-        demand(terminals.padding.keys() <= shapes.keys(), "a link is padded that has no shape")
-        require_limits(frames, inputs.scene, terminals)
-        bodies = [Body(name, place[name][0], some, False) for name, some in shapes.items()]
-        bodies += [Body(each.name, 0, list(each.shapes), True) for each in inputs.scene.obstacles]
-        table, names = _witnesses(read, inputs, bodies, may_touch(inputs.robot, inputs.scene, shapes))
+        bodies, ranges = bodies_of(inputs, frames, terminals), ranges_of(inputs, frames, terminals)
+        require_limits(ranges, terminals)
+        low, high = np.where(np.isinf(ranges), (-np.pi, np.pi), ranges).T
+        require_bounded(inputs, frames, bodies, replace(terminals, curves=np.array([[low, low, high]])))
+        table, names = _witnesses(read, inputs, bodies, may_touch(inputs, bodies))
         left, blocked, least = np.ones(read.goals + len(read.poses), bool), 0, np.inf
+        most = np.abs(frames.factor * ranges.T[:, frames.column] + frames.offset).max(0)
+        slides = np.where(frames.slides, most, 0.0)
         for columns, answers in read.parts:
-            cells = cells_of(_ranges(frames, inputs, terminals, columns), answers)
+            cells = cells_of(_ranges(frames, ranges, columns, terminals.joints), answers)
             witness, shut = cells.answer - 1 - len(columns), cells.answer > len(columns)
             demand((witness < len(table)).all(), "an unknown witness")
             for number in np.unique(witness[shut]):
@@ -132,7 +130,6 @@ def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
                 moving = frames.column[between(frames, ball.frame, frame)]
                 demand(np.isin(moving, columns).all(), "other joints move a witness")
             middles, half = cells.middles()
-            _require_precise(frames, inputs, bodies, cells)
             for rows in _some(shut):
                 places = Places(frames, cells.ranges, middles[rows], half[rows], len(terminals.joints))
                 least = min(least, require_blocked(places, frames, witness[rows], table))
@@ -140,14 +137,14 @@ def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
             inside = _inside(cells, terminals)
             for i, goal in enumerate(terminals.curves[: read.goals, 2]):
                 left[i] &= (cells.holding(goal) & inside).any()
-            slides, beyond = _slides(frames, inputs, terminals), np.ones(len(read.poses), bool)
+            beyond = np.ones(len(read.poses), bool)
             for rows in _some(inside) if read.poses else ():
                 places = Places(frames, cells.ranges, middles[rows], half[rows], len(terminals.joints))
                 beyond &= [are_beyond(pose, places, frames, columns, slides).all() for pose in read.poses]
             left[read.goals :] &= ~beyond
         demand(not left.any(), f"a goal is not shown to be out of reach: number {int(left.argmax())}")
     used = tuple(dict.fromkeys(terminals.joints[column] for columns, _ in read.parts for column in columns))
-    return Shown(read, names, used, blocked, least, silent(inputs.robot, inputs.scene, shapes, place, terminals))
+    return Shown(read, names, used, blocked, least, silent(inputs, bodies, terminals))
 
 
 def _some(chosen: Bools) -> list[Ints]:
@@ -163,38 +160,15 @@ def _inside(cells: Cells, terminals: Certificate) -> Bools:
     return reached(cells, start)
 
 
-def _range(inputs: Inputs, joint: Joint) -> tuple[float, float]:
-    """Return how far a joint may go, -inf and inf without limits."""
-    low, high = -np.inf, np.inf
-    for least, most in ((joint.lower, joint.upper), inputs.scene.limits.get(joint.name, (low, high))):
-        if most - least <= ENDLESS:
-            low, high = max(low, least - BEYOND), min(high, most + BEYOND)
-    return low, high
-
-
-def _slides(frames: Frames, inputs: Inputs, terminals: Certificate) -> Floats:
-    """Return how far from 0 joints slide at most, 0 for those that turn [m]."""
-    joints = {joint.name: joint for joint in frames.joints}
-    far = np.zeros(len(frames.joints))
-    for k in np.flatnonzero(frames.slides):
-        ends = np.array(_range(inputs, joints[terminals.joints[frames.column[k]]]))
-        far[k] = np.abs(frames.factor[k] * ends + frames.offset[k]).max()
-    return far
-
-
-def _ranges(frames: Frames, inputs: Inputs, terminals: Certificate, columns: Ints) -> Ranges:
+def _ranges(frames: Frames, ranges: Floats, columns: Ints, names: tuple[str, ...]) -> Ranges:
     """Return the ranges of columns: as far as the joints may go, or one turn."""
-    joints = {joint.name: joint for joint in frames.joints}
-    low, high = np.full(len(columns), -np.inf), np.full(len(columns), np.inf)
-    for i, column in enumerate(columns):
-        name = terminals.joints[column]
-        low[i], high[i] = _range(inputs, joints[name])
-        turns = frames.factor[frames.column == column]
-        slides = frames.slides[frames.column == column].any()
-        whole = not slides and (turns == np.rint(turns)).all()
-        demand(np.isfinite(low[i]) or whole, f"{name} has no limits, and does not turn endlessly alone")
-        demand(low[i] < high[i], f"{name} has no range")
+    low, high = ranges[columns].T
     endless = np.isinf(low)
+    for column, is_endless in zip(columns, endless, strict=True):
+        turns, slides = frames.factor[frames.column == column], frames.slides[frames.column == column]
+        whole = not slides.any() and (turns == np.rint(turns)).all()
+        demand(whole or not is_endless, f"{names[column]} has no limits, and does not turn endlessly alone")
+    demand((low < high).all(), "a joint has no range")
     return Ranges(columns, np.where(endless, -np.pi, low), np.where(endless, np.pi, high), endless)
 
 
@@ -231,14 +205,3 @@ def _witnesses(
         table.append((spots[first], (two.frame, solid), keep))
         names[one.name, two.name] = None
     return table, tuple(names)
-
-
-def _require_precise(frames: Frames, inputs: Inputs, bodies: list[Body], cells: Cells) -> None:
-    """Raise Refused where rounding may exceed what a witness has to spare."""
-    terminals = np.zeros((1, 3, 1 + int(frames.column.max())))
-    terminals[0, 0, cells.ranges.columns], terminals[0, 1, cells.ranges.columns] = cells.ranges.low, cells.ranges.high
-    _, out = frames.far(terminals)
-    far = (np.linalg.norm(shape.points, axis=1).max() for body in bodies for shape in body.shapes)
-    reach = out.max() + max(far, default=0.0)
-    largest = 1.0 + np.abs(terminals).max() * max(1.0, float(np.abs(frames.factor).max()))
-    demand(ROUNDING * inputs.robot.depth * reach * largest < LEAST, "the robot is too large for double precision")

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad_verify.cells import Ranges
+from evenroad_verify.claim import LEAST, Body
 from evenroad_verify.errors import Floats, Ints, demand
 from evenroad_verify.frames import Frames
 from evenroad_verify.shapes import Shape
 from evenroad_verify.solids import are_inside, pieces_of
-
-LEAST = 1e-9
-"""What a ball must have to spare: inside of its shape, and where it overlaps another body [m]."""
 
 
 @dataclass(frozen=True)
@@ -52,16 +50,6 @@ def solid_of(shape: Shape) -> Solid | None:
     axes = np.stack([across, np.cross(shape.axis, across), shape.axis])
     half = np.array([0.0, shape.disc, 0.5 * np.linalg.norm(corner[-1] - corner[0])])
     return Solid(0.5 * (corner[0] + corner[-1]), axes, half, shape.radius, False)
-
-
-@dataclass(frozen=True)
-class Body:
-    """Shapes of one name, in a frame."""
-
-    name: str
-    frame: int
-    shapes: list[Shape]
-    is_obstacle: bool
 
 
 def is_ball_inside(body: Body, centre: Floats, radius: float, pieces: dict[int, list[tuple[Floats, bool]]]) -> bool:

@@ -6,22 +6,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evenroad_verify.errors import Bools, Floats, Ints, Pose, demand, number
+from evenroad_verify.claim import LEAST
+from evenroad_verify.errors import Bools, Floats, Ints, Pose, demand, numbers
 from evenroad_verify.frames import Frames
-from evenroad_verify.overlaps import LEAST, Places, between
+from evenroad_verify.overlaps import Places, between
+from evenroad_verify.shapes import rotation_of
 
 
 @dataclass(frozen=True)
 class PoseGoal:
     """All configurations that bring the origin of a link within `near` of a point [m].
 
-    With a `rotation` the link is turned from that by at most `tilt` [rad].
+    With a quaternion the link is turned from that by at most `tilt` [rad].
     """
 
     link: str
     point: Floats
     near: float
-    rotation: Floats | None = None
+    xyzw: Floats | None = None
     tilt: float = 0.0
 
 
@@ -30,17 +32,13 @@ def read_poses(said: dict[str, list[str]]) -> list[PoseGoal]:
     goals = []
     for line in said.get("position", []):
         *words, link = line.split(" ", 4)
-        near, *point = map(number, words)
-        demand(len(point) == 3, "a position is not one")
+        near, *point = numbers(words, 4)
         goals.append(PoseGoal(link, np.array(point), near))
     for line in said.get("pose", []):
         *words, link = line.split(" ", 9)
-        near, tilt, *point = map(number, words)
-        demand(len(point) == 7, "a pose is not one")
-        x, y, z, w = np.array(point[3:]) / max(1e-300, float(np.linalg.norm(point[3:])))
-        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        demand(abs(x * x + y * y + z * z + w * w - 1.0) < 1e-9, "a quaternion is zero")
-        goals.append(PoseGoal(link, np.array(point[:3]), near, np.eye(3) + 2 * w * cross + 2 * cross @ cross, tilt))
+        near, tilt, *pose = numbers(words, 9)
+        goals.append(PoseGoal(link, np.array(pose[:3]), near, np.array(pose[3:]), tilt))
+        demand(np.linalg.norm(pose[3:]) > 1e-9, "a quaternion is zero")
     demand(all(goal.near >= 0.0 and goal.tilt >= 0.0 for goal in goals), "a pose has a tolerance below 0")
     return goals
 
@@ -60,7 +58,7 @@ def are_beyond(goal: PoseGoal, places: Places, frames: Frames, columns: Ints, sl
     most = sum(bars) + float(slides[rest].sum()) if rest else sum(bars)
     least = max([0.0, *(2.0 * bar - most for bar in bars)])
     last = known[-1] + 1 if known else 0
-    local = frames.origin[rest[0]][1] if rest else shift if goal.rotation is None else np.zeros(3)
+    local = frames.origin[rest[0]][1] if rest else shift if goal.xyzw is None else np.zeros(3)
     if not rest:
         most = least = 0.0
     rows = np.arange(len(places.origin))
@@ -72,8 +70,10 @@ def are_beyond(goal: PoseGoal, places: Places, frames: Frames, columns: Ints, sl
 def _target(goal: PoseGoal, placed: Pose, bars: list[float]) -> tuple[Floats, float]:
     """Return where the last joint, or the link itself, must be, and how near; adds the last bar where it counts."""
     rotation, shift = placed
-    if goal.rotation is None:
+    if goal.xyzw is None:
         bars.append(float(np.linalg.norm(shift)))
         return goal.point, goal.near
     # The rotation of the link says where the origin of its frame is.
-    return goal.point - goal.rotation @ rotation.T @ shift, goal.near + goal.tilt * float(np.linalg.norm(shift))
+    return goal.point - rotation_of(goal.xyzw) @ rotation.T @ shift, goal.near + goal.tilt * float(
+        np.linalg.norm(shift)
+    )

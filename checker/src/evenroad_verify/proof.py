@@ -5,15 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad_verify.certificate import Certificate, Kept
-from evenroad_verify.claim import Claim
+from evenroad_verify.claim import LEAST, Claim
 from evenroad_verify.errors import Answers, Bools, Floats, Ints, demand
 from evenroad_verify.nodes import Nodes
 
 HALVE_TIME, HALVE_FIRST, HALVE_SECOND, CENTRES, BOXES, CORNERS = range(6)
-LEAST = 1e-9
-"""What a computed gap must exceed, beyond the distance that is to be kept [m]."""
-ROUNDING = 2.0**-46
-"""Times the joints of a chain, reach and the largest joint value, a bound of the error of a computed gap."""
 FINEST = 40
 """Number of times that a motion may be halved."""
 MOTION, NUMBER, LEVEL, FIRST, SECOND, PAIR = range(6)
@@ -23,7 +19,7 @@ NO_NODE = -1
 _AT_ONCE = 1 << 14
 
 
-def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, Ints]:
+def prove(claim: Claim, certificate: Certificate) -> tuple[float, Ints]:
     """Return the least gap of all answers [m] and the answered tasks; Refused where a task is not proved."""
     pairs = np.array([(pair.first, pair.second) for pair in claim.pairs], np.int64).reshape(-1, 2)
     tasks, answers, left = expand(claim.nodes, _first(certificate, pairs), certificate.answers)
@@ -33,13 +29,6 @@ def prove(claim: Claim, certificate: Certificate, depth: int) -> tuple[float, In
     demand((how == CENTRES).all(), "an answer to a constraint is a direction")
     given = np.cumsum(answers > CENTRES) - 1
     demand(int((answers > CENTRES).sum()) == len(certificate.directions), "directions are missing or left over")
-    _, out = claim.frames.far(certificate.curves, certificate.tolerance)
-    reach = (np.array(claim.nodes.reach) + out[np.array(claim.nodes.frame)])[tasks[:, FIRST : SECOND + 1]]
-    places = [(claim.frames.place[each.link], each.part) for each in certificate.kept if not each.is_axis]
-    arms = [out[frame] + np.linalg.norm(turn @ point + shift) for (frame, (turn, shift)), point in places]
-    farthest = max(reach.max(initial=0.0), *arms, 0.0)
-    largest = 1.0 + np.abs(certificate.curves).max() * max(1.0, float(np.abs(claim.frames.factor).max()))
-    demand(ROUNDING * depth * farthest * largest < LEAST, "the robot is too large for double precision")
     directions = np.concatenate([certificate.directions, np.zeros((1, 3))])  # of those without one any will do
     keep, least = np.array([pair.keep for pair in claim.pairs]), np.inf
     motions = Motions(claim, certificate)

@@ -48,6 +48,11 @@ class Shape:
         far = np.linalg.norm(self.points, axis=1).take(corners).max(0)
         return np.concatenate([places.mean(1), places.min(1), places.max(1), far[None]])
 
+    @property
+    def reach(self) -> float:
+        """Largest distance of a point from the frame's origin [m]."""
+        return float(np.linalg.norm(self.points, axis=1).max()) + self.radius + self.disc
+
     def at(self, pose: Pose) -> Shape:
         """Return the shape moved by a pose."""
         rotation, shift = pose
