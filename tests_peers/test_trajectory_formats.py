@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+import evenroad as er
 from evenroad.errors import BrokenFile
 from evenroad.trajectory import Limits, make_trajectory, save_trajectory
 from evenroad.trajectory.waypoints_file import read_waypoints
@@ -20,15 +21,21 @@ def trajectory():
     return make_trajectory(PATH, LIMITS, names=[f"joint_{i}" for i in range(6)])
 
 
-def test_a_bag_is_read_back_by_rosbags(trajectory, tmp_path):
+def message_of(bag):
+    """The connection and the message of a bag that has one."""
     stores = pytest.importorskip("rosbags.typesys")
-    save_trajectory(tmp_path / "t.mcap", trajectory)
     store = stores.get_typestore(stores.Stores.ROS2_JAZZY)
-    reader = pytest.importorskip("rosbags.rosbag2.storage_mcap").McapReader(tmp_path / "t.mcap")
+    reader = pytest.importorskip("rosbags.rosbag2.storage_mcap").McapReader(bag)
     reader.open()
     [(connection, _, raw)] = list(reader.messages(reader.connections))
     reader.close()
-    message = store.deserialize_cdr(raw, connection.msgtype)
+    return connection, store.deserialize_cdr(raw, connection.msgtype)
+
+
+def test_a_bag_is_read_back_by_rosbags(trajectory, tmp_path):
+    pytest.importorskip("rosbags")
+    save_trajectory(tmp_path / "t.mcap", trajectory)
+    connection, message = message_of(tmp_path / "t.mcap")
     assert connection.topic == "/joint_trajectory"
     assert tuple(message.joint_names) == trajectory.names
     np.testing.assert_array_equal([p.positions for p in message.points], trajectory.positions)
@@ -80,3 +87,18 @@ def test_it_is_as_fast_as_toppra_on_the_same_corners():
     ]
     theirs = toppra.algorithm.TOPPRA(constraints, spline, gridpoints=np.linspace(0, curve.length, 1500))
     assert ours == pytest.approx(theirs.compute_trajectory().duration, rel=0.02)
+
+
+def test_a_bag_of_a_car_is_a_nav_path_for_rosbags(tmp_path):
+    pytest.importorskip("rosbags")
+    box = [(-0.45, -0.31), (0.45, -0.31), (0.45, 0.31), (-0.45, 0.31)]
+    world = er.GridMap(np.zeros((60, 60), dtype=bool), resolution=0.1).world(footprint=box, turning_radius=0.5)
+    made = er.plan(world, (2, 2, 0), (4, 4, 2)).trajectory(speed=1.0, step=0.05)
+    made.save(tmp_path / "go.mcap")
+    connection, message = message_of(tmp_path / "go.mcap")
+    assert (connection.topic, connection.msgtype) == ("/plan", "nav_msgs/msg/Path")
+    for each, time, (x, y, angle) in zip(message.poses, made.times, made.positions, strict=True):
+        assert each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec == pytest.approx(time, abs=1e-9)
+        assert (each.pose.position.x, each.pose.position.y) == (x, y)
+        turned = each.pose.orientation
+        np.testing.assert_allclose([turned.z, turned.w], [np.sin(angle / 2), np.cos(angle / 2)], atol=1e-15)

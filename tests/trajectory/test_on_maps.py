@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.errors import NotAvailable
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.trajectory import Limits, make_trajectory
 from evenroad.world import MapFrame
 from tests.world.gridmap_oracle import points_to_obstacles
@@ -90,3 +90,32 @@ def test_a_state_is_free_up_to_its_rounding_and_not_beyond():
         states = np.array([[-1.0 - nearer, 71.0], [-1.0 - nearer, 71.2]])
         assert not world.motion_valid(states[0], states[1])
         assert world.driven_free(states).tolist() == [free]
+
+
+def test_a_disk_keeps_its_acceleration_in_all_directions_together():
+    world = er.load_map("office.yaml").world(radius=0.25)
+    result = er.plan(world, (1.0, 2.0), (8.5, 3.0))
+    times = {}
+    for deviation in (0.0, 0.05, 0.3):
+        made = result.trajectory(speed=1.0, acceleration=0.5, deviation=deviation)
+        velocity = np.diff(made.positions, axis=0) / made.step
+        change = np.diff(velocity, axis=0) / made.step
+        assert np.linalg.norm(velocity, axis=1).max() <= 1.0 + 1e-9
+        assert np.linalg.norm(change, axis=1).max() <= 0.5 * (1.0 + 1e-6)
+        np.testing.assert_array_equal(made.positions[[0, -1]], result.path[[0, -1]])
+        pixels = world.grid.frame.to_pixels(made.positions[::20])
+        assert points_to_obstacles(pixels, world.grid.occupied).min() >= 0.25 / SIDE - 1e-8
+        assert made.deviation <= deviation + 1e-9
+        assert (made.proof, made.names) == ("exact", ("x", "y"))
+        times[deviation] = made.duration
+    assert times[0.0] > times[0.05] >= times[0.3]
+
+
+def test_a_disk_drives_a_straight_path_in_the_shortest_whole_number_of_steps():
+    world = er.GridMap(np.zeros((40, 40), dtype=bool), frame(0.0)).world(0.1)
+    path = world.grid.frame.to_map(np.array([[5.0, 5.0], [25.0, 20.0]]))
+    made = er.plan(world, *path).trajectory(speed=2.0, acceleration=0.5)
+    # Half of the 1.25 m to accelerate, half to brake.
+    assert made.duration == pytest.approx(0.008 * np.ceil(2.0 * np.sqrt(1.25 / 0.5) / 0.008))
+    with pytest.raises(InvalidValue, match="starts and stops at rest"):
+        er.plan(world, *path).trajectory(acceleration=0.5, start_velocity=(0.1, 0.0))

@@ -398,16 +398,16 @@ class PlanResult:
         Parameters
         ----------
         limits : Limits, or the file of a ``joint_limits.yaml``, optional
-            Default: those of the robot; in worlds without a robot, `speed` alone limits the motion.
+            Default: those of the robot; in worlds without a robot, `speed` and `acceleration` limit the motion.
         speed : float
             With limits, 0 < speed <= 1: the motion takes ``1 / speed`` times as long as at full speed.  Without limits,
             as on a map: the largest speed along the path, > 0 [map units per second], reached in half a second.
         **options
-            Options of :func:`evenroad.trajectory.arm_trajectory`.
+            Of :func:`evenroad.trajectory.arm_trajectory`; on maps `acceleration`, of cars all `trajectory.DriveLimits`.
 
         Returns
         -------
-        Trajectory
+        Trajectory or CarTrajectory
 
         Raises
         ------
@@ -422,10 +422,10 @@ class PlanResult:
         >>> er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0)
         Trajectory(5.992 s, 2 joints, 750 states)
         """
-        from evenroad.trajectory.arm import trajectory_of
+        from evenroad.trajectory.of_plan import trajectory_of
 
         path, world = self._required("driven")
-        return trajectory_of(world, path, limits, speed=speed, **options)
+        return trajectory_of(world, path, limits, speed=speed, pieces=self.pieces, **options)
 
     def certify(
         self,

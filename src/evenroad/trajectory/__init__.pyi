@@ -1,7 +1,10 @@
 from evenroad.loading.masses import Mass as Mass
 from evenroad.trajectory.arm import arm_trajectory as arm_trajectory
 from evenroad.trajectory.arm import controller_joints as controller_joints
+from evenroad.trajectory.car import car_trajectory as car_trajectory
+from evenroad.trajectory.car_states import CarTrajectory as CarTrajectory
 from evenroad.trajectory.checked import proved_in as proved_in
+from evenroad.trajectory.drive_limits import DriveLimits as DriveLimits
 from evenroad.trajectory.dynamics import Dynamics as Dynamics
 from evenroad.trajectory.dynamics import load_dynamics as load_dynamics
 from evenroad.trajectory.formats import format_of as format_of

@@ -2,36 +2,25 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
-from functools import reduce
-from inspect import signature
-from operator import and_
-from typing import Any
 
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._checks import as_batch, require_known, require_positive
-from evenroad._shared import once
+from evenroad._checks import as_batch
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.constraints.constrained_world import KeptWorld
-from evenroad.constraints.differential_drive import DifferentialDrive, DrivenWorld
-from evenroad.errors import InvalidValue, shown
+from evenroad.constraints.differential_drive import DifferentialDrive
+from evenroad.errors import InvalidValue
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.robots.kinematics import held_values, link_poses, tip_links
 from evenroad.robots.robot import Robot
 from evenroad.space.path import continued
 from evenroad.trajectory.in_motion import InMotion
-from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
+from evenroad.trajectory.limits import Limits, limits_of
 from evenroad.trajectory.make import DEVIATION, STEP, make_trajectory
 from evenroad.trajectory.tip_constraints import constrained_world
 from evenroad.trajectory.trajectory import Trajectory
 from evenroad.trajectory.urscript import with_radii
-from evenroad.world import World
-
-_VELOCITIES = ("start_velocity", "goal_velocity")
-"""Keywords of a plan's trajectory that begins or ends in motion."""
 
 
 def arm_trajectory(
@@ -121,46 +110,3 @@ def controller_joints(robot: Robot) -> tuple[str, ...]:
     return tuple(
         joint.name for joint in robot.joints if joint.child in links and joint.kind != "fixed" and joint.mimic is None
     )
-
-
-@once
-def _known_options() -> set[str]:
-    return {*signature(arm_trajectory).parameters} - {"world", "path"} | {*_VELOCITIES}
-
-
-def trajectory_of(
-    world: World,
-    path: Floats,
-    limits: Limits | str | os.PathLike[str] | None,
-    *,
-    speed: float,
-    **options: Any,
-) -> Trajectory:
-    """See :meth:`PlanResult.trajectory`."""
-    for key in options:
-        require_known("keyword of trajectory:", key, _known_options())
-    moving = InMotion(path, *(options.pop(name, None) for name in _VELOCITIES))
-    if isinstance(world, DrivenWorld):
-        if moving.start is not None or moving.goal is not None:
-            raise InvalidValue("a base that cannot go sideways starts and stops at rest")
-        options = {"deviation": 0.0, "constraints": DifferentialDrive()} | options
-        world = world.world
-    if isinstance(world, KeptWorld):
-        # A plan without lines is in a constrained world. Its arm has names and limits, and keeps the constraints.
-        options.setdefault("constraints", reduce(and_, world.keeps))
-        world = world.world
-    if isinstance(world, ArmWorld):
-        if isinstance(limits, str | os.PathLike):
-            limits = limits_of(world.robot, limits)
-        return arm_trajectory(world, moving, limits, speed=speed, **options)
-    if limits is None:
-        fastest = require_positive("speed", speed)
-        each = (fastest,) * path.shape[1]
-        at_speed = Limits(each, tuple(v / SECONDS_TO_FULL_SPEED for v in each), along_path=fastest)
-    elif isinstance(limits, Limits):
-        at_speed = limits.at_speed(speed)
-    else:
-        raise InvalidValue(
-            f"limits must be Limits(velocity=..., acceleration=...) where there is no robot, got {shown(limits)}"
-        )
-    return make_trajectory(moving, at_speed, world=world, **options)

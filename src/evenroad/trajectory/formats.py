@@ -9,9 +9,9 @@ import json
 import math
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import yaml
@@ -21,21 +21,26 @@ from evenroad._checks import require_extra
 from evenroad._files import Json, atomic_write, read_json_file
 from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, UnknownName
+from evenroad.trajectory.car_formats import FORMAT as OF_CARS
+from evenroad.trajectory.car_formats import PATH, Message, car_csv, car_json, car_trajectory_of, nav_path
+from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.checked import require_within_limits
 from evenroad.trajectory.corners import MOST_STATES
 from evenroad.trajectory.limits import Limits
-from evenroad.trajectory.trajectory import Trajectory
+from evenroad.trajectory.trajectory import ON_MAPS, Trajectory
 from evenroad.trajectory.urscript import movej_script, servoj_script
 
 FORMAT = "evenroad trajectory 1"
-TOPIC = "/joint_trajectory"
-Message: TypeAlias = Any
-"""A message of ROS 2; its types are made at run time."""
+TOPIC, PATH_TOPIC = "/joint_trajectory", "/plan"
 _TABLES = ("positions", "velocities", "accelerations")
 MESSAGE = "trajectory_msgs/msg/JointTrajectory"
 
 
-def save_trajectory(path: str | os.PathLike[str], trajectory: Trajectory, order: Sequence[str] | None = None) -> None:
+Saved: TypeAlias = Trajectory | CarTrajectory
+"""A trajectory of an arm or a disk, or of a car."""
+
+
+def save_trajectory(path: str | os.PathLike[str], trajectory: Saved, order: Sequence[str] | None = None) -> None:
     """Write a trajectory in the format of the file's suffix, atomically.
 
     Parameters
@@ -43,8 +48,9 @@ def save_trajectory(path: str | os.PathLike[str], trajectory: Trajectory, order:
     path : str or path-like
         ``.json`` (read by :func:`load_trajectory`), ``.csv``, ``.yaml`` (ROS 2's ``trajectory_msgs/JointTrajectory``),
         ``.mcap`` (the same as a bag, on the topic ``/joint_trajectory``; extra ``ros``), ``.script`` (URScript, timed)
-        or ``.movej.script`` (URScript, by waypoints).
-    trajectory : Trajectory
+        or ``.movej.script`` (URScript, by waypoints).  Robots on maps have the first four, and ROS 2's
+        ``nav_msgs/Path`` in place of joints.
+    trajectory : Trajectory or CarTrajectory
     order : sequence of str, optional
         The joints of the controller, in its order; default: moving joints, then held ones.
 
@@ -63,31 +69,40 @@ def save_trajectory(path: str | os.PathLike[str], trajectory: Trajectory, order:
 
 
 def save_trajectories(
-    paths: Iterable[str | os.PathLike[str]], trajectory: Trajectory, order: Sequence[str] | None = None
+    paths: Iterable[str | os.PathLike[str]], trajectory: Saved, order: Sequence[str] | None = None
 ) -> None:
     """Write a trajectory to several files by :func:`save_trajectory`; to none if one format cannot express it."""
-    contents = [(path, WRITERS[format_of(path)](trajectory, order)) for path in paths]
+    if isinstance(trajectory, CarTrajectory):
+        contents = [(path, CAR_WRITERS[format_of(path, CAR_WRITERS)](trajectory)) for path in paths]
+    else:
+        contents = [(path, WRITERS[format_of(path)](trajectory, order)) for path in paths]
     for path, data in contents:
         with atomic_write(path) as file:
             file.write(data)
 
 
-def format_of(path: str | os.PathLike[str]) -> str:
-    """Return the suffix of a file for trajectories, or raise UnknownName."""
-    name = Path(path).name.lower()
-    known = [suffix for suffix in WRITERS if name.endswith(suffix) and name != suffix]
+def format_of(path: str | os.PathLike[str], writers: Collection[str] | None = None) -> str:
+    """Return the suffix of a file for trajectories, by default of arms, or raise UnknownName."""
+    name, suffixes = Path(path).name.lower(), WRITERS if writers is None else writers
+    known = [suffix for suffix in suffixes if name.endswith(suffix) and name != suffix]
     if not known:
-        raise UnknownName.among("format of a trajectory", Path(path).suffix or str(path), WRITERS)
+        raise UnknownName.among("format of a trajectory", Path(path).suffix or str(path), suffixes)
     return max(known, key=len)
 
 
-def load_trajectory(path: str | os.PathLike[str]) -> Trajectory:
+def load_trajectory(path: str | os.PathLike[str]) -> Saved:
     """Read a trajectory from the JSON of :func:`save_trajectory`.
 
     It has not been checked in a world: its `proof` is ``unchecked`` until :func:`proved_in`.  Raises BrokenFile if it
     is damaged, its numbers are inconsistent, or they violate its own limits.
     """
-    return trajectory_of(read_json_file(path, "trajectory"), path)
+    return saved_of(read_json_file(path, "trajectory"), path)
+
+
+def saved_of(record: Json, path: str | os.PathLike[str]) -> Saved:
+    """Return the trajectory of an arm, a disk or a car of a JSON record of a file; errors as :func:`trajectory_of`."""
+    is_of_car = isinstance(record, dict) and record.get("format") == OF_CARS
+    return car_trajectory_of(record, path) if is_of_car else trajectory_of(record, path)
 
 
 def trajectory_of(record: Json, path: str | os.PathLike[str]) -> Trajectory:
@@ -190,7 +205,15 @@ def _csv(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
     return "".join(",".join(line) + "\n" for line in lines).encode()
 
 
+def _text(message: Message) -> bytes:
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    text: str = yaml.dump(message, Dumper=dumper, sort_keys=False, default_flow_style=None, width=1000)
+    return text.encode()
+
+
 def _yaml(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+    if _is_on_map(trajectory):
+        return _text(_path_of(trajectory, lambda _, **fields: fields))
     names, tables = trajectory.columns(order)
     points = [
         {
@@ -201,10 +224,20 @@ def _yaml(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
         for time, *rows in zip(trajectory.times, *tables, strict=True)
     ]
     header = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""}
-    message = {"header": header, "joint_names": list(names), "points": points}
-    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-    text: str = yaml.dump(message, Dumper=dumper, sort_keys=False, default_flow_style=None, width=1000)
-    return text.encode()
+    return _text({"header": header, "joint_names": list(names), "points": points})
+
+
+def _is_on_map(trajectory: Saved) -> bool:
+    """Return whether it is of a robot on a map; an arm, which may have joints of such names, has a controller."""
+    if isinstance(trajectory, CarTrajectory):
+        return True
+    return trajectory.names in (ON_MAPS[:2], ON_MAPS) and not trajectory.controller
+
+
+def _path_of(trajectory: Saved, make: Callable[..., Message]) -> Message:
+    """Return the trajectory of a robot on a map as ``nav_msgs/Path``: a disk has no heading."""
+    poses = trajectory.positions
+    return nav_path(trajectory.times, poses if poses.shape[1] == 3 else np.pad(poses, ((0, 0), (0, 1))), make)
 
 
 def joint_trajectory(
@@ -232,16 +265,24 @@ def joint_trajectory(
     return make(MESSAGE, header=header, joint_names=list(names), points=points)
 
 
-def _mcap(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+def _mcap(trajectory: Saved, order: Sequence[str] | None = None) -> bytes:
     rosbags = require_extra("rosbags.rosbag2", "ros", "a bag of ROS 2")
     stores = require_extra("rosbags.typesys", "ros", "a bag of ROS 2")
     store = stores.get_typestore(stores.Stores.ROS2_HUMBLE)
-    message = joint_trajectory(trajectory, lambda kind, **fields: store.types[kind](**fields), order)
+
+    def make(kind: str, **fields: object) -> Message:
+        return store.types[kind](**fields)
+
+    if _is_on_map(trajectory):
+        message, kind, topic = _path_of(trajectory, make), PATH, PATH_TOPIC
+    else:
+        assert isinstance(trajectory, Trajectory), "a car is on a map"
+        message, kind, topic = joint_trajectory(trajectory, make, order), MESSAGE, TOPIC
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"
         with rosbags.Writer(bag, version=9, storage_plugin=rosbags.StoragePlugin.MCAP) as writer:
-            connection = writer.add_connection(TOPIC, MESSAGE, typestore=store)
-            writer.write(connection, 0, store.serialize_cdr(message, MESSAGE))
+            connection = writer.add_connection(topic, kind, typestore=store)
+            writer.write(connection, 0, store.serialize_cdr(message, kind))
         return (bag / "bag.mcap").read_bytes()
 
 
@@ -259,3 +300,10 @@ WRITERS: dict[str, Callable[[Trajectory, Sequence[str] | None], bytes]] = {
     ".movej.script": lambda trajectory, order: movej_script(trajectory, order).encode(),
 }
 """Suffix -> function that returns the contents of a file."""
+CAR_WRITERS: dict[str, Callable[[CarTrajectory], bytes]] = {
+    ".json": car_json,
+    ".csv": car_csv,
+    ".yaml": lambda trajectory: _text(_path_of(trajectory, lambda _, **fields: fields)),
+    ".mcap": _mcap,
+}
+"""The same for cars."""

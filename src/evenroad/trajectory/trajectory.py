@@ -16,6 +16,8 @@ from evenroad._checks import counted, require_known
 from evenroad.errors import InvalidValue, shown
 from evenroad.trajectory.limits import Limits
 
+ON_MAPS = "x", "y", "angle"
+"""Names of what moves in place of joints on a map; a disk has the first two."""
 STEP = 0.008
 """Time between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
 
