@@ -110,6 +110,12 @@ typedef struct {
   uint64_t size;
 } Sha256;
 
+/* A file that a certificate carries, and the name that others have for it. */
+typedef struct {
+  const char* name;
+  File file;
+} Carried;
+
 /* Where files come from, and the digest of the digests of all that were read. */
 typedef struct {
   Sha256 hash;
@@ -117,6 +123,8 @@ typedef struct {
   size_t package_count;
   const uint8_t* carried; /* by the certificate: each after its length */
   size_t left;
+  Carried* taken; /* of those that are carried */
+  size_t taken_count;
   bool own; /* whether the next carried file stands for the one that is asked for */
 } Files;
 
@@ -128,6 +136,9 @@ char* digest_of(File file); /* in hexadecimal digits */
 
 /* The folder of a file: all up to its last slash. */
 char* folder_of(const char* path);
+
+/* Write files into a folder; a number goes before the name of one that another file has. */
+void write_files(const char* folder, const Carried* files, size_t count);
 bool exists(const char* path);
 
 #endif

@@ -23,8 +23,6 @@ enum {
 };
 enum { LONGEST_HEADER = 1 << 16, MOST_MOTIONS = 1 << 20 };
 
-static const double FARTHEST = 1000;
-
 static size_t count_of(const char* text) {
   size_t width = strspn(text, "0123456789");
   if (!width || width > 9 || text[width]) fail(REFUSED, "no count: %.20s", text);
@@ -214,13 +212,14 @@ static void require_counts(const Certificate* certificate, const bool seen[ONCE]
 }
 
 /* Refuse carried files that are cut off, or that no line announces. */
-static void require_carried(const Certificate* certificate) {
+static void require_carried(Certificate* certificate) {
   if ((certificate->carried_size > 0) != (certificate->robot || certificate->scene)) {
     fail(REFUSED, "it carries files and does not say so, or says so and does not");
   }
   for (size_t at = 0, left = certificate->carried_size; left;) {
     uint64_t size = left < 8 ? UINT64_MAX : little_endian(certificate->carried + at, 8);
     if (left < 8 || size > left - 8) fail(REFUSED, "a file that it carries is cut off");
+    ++certificate->carried_count;
     at += 8 + (size_t)size;
     left -= 8 + (size_t)size;
   }

@@ -4,6 +4,8 @@
 
 #include "base.h"
 
+#define FARTHEST 1000.0 /* largest value of a joint, or coordinate of a ball */
+
 /* A value of a joint, or the padding of a link. */
 typedef struct {
   const char* name;
@@ -45,7 +47,7 @@ typedef struct {
   size_t degree, motions, answer_count, direction_count, points;
   double* values; /* of a point, one for each joint */
   const uint8_t *answers, *directions, *carried;
-  size_t carried_size;
+  size_t carried_size, carried_count;
   Tree* trees; /* of a certificate that there is no path; its points are the start and the goals */
   PoseGoal* poses;
   size_t goals, pose_count, ball_count, witness_count, tree_count;

@@ -102,7 +102,6 @@ static void add_polygon(const Reader* in, const Corners* of, const size_t* numbe
 
 /* Triangles, a list of polygons with their counts, or polygons of their own. */
 static void add_primitive(const Reader* in, const Entry* mesh, const Entry* primitive, const Pose* pose) {
-  ++in->mesh->part;
   const Entry* input = input_of(primitive, "VERTEX");
   if (!input) fail(BAD_INPUT, "%s: <%s> without corners", in->path, primitive->key);
   const Entry* vertices = with_id(mesh, "vertices", text_of(input, "@source", NULL), in);
@@ -138,6 +137,7 @@ static void add_primitive(const Reader* in, const Entry* mesh, const Entry* prim
 static void add_geometry(const Reader* in, const Entry* geometry, const Pose* pose) {
   const Entry* mesh = child_of(geometry, "mesh");
   if (!mesh) fail(BAD_INPUT, "%s: a geometry that is no mesh", in->path);
+  ++in->mesh->part; /* a closed surface may be of several primitives, one for each material */
   for (const Entry* each = mesh->child; each; each = each->next) {
     if (!strcmp(each->key, "triangles") || !strcmp(each->key, "polylist") || !strcmp(each->key, "polygons")) {
       add_primitive(in, mesh, each, pose);

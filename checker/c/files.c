@@ -1,5 +1,12 @@
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#ifdef _WIN32
+#include <direct.h>
+#define mkdir(path, mode) _mkdir(path)
+#else
+#include <sys/stat.h>
+#endif
 
 #include "base.h"
 
@@ -102,6 +109,7 @@ File next_file(Files* files, const char* path) {
     if (!files->left) fail(REFUSED, "it does not carry %.200s", path);
     size_t size = (size_t)little_endian(files->carried, 8); /* which fits, as read_certificate has seen to */
     file = (File){(uint8_t*)copied((const char*)files->carried + 8, size), size};
+    files->taken[files->taken_count++] = (Carried){path + strlen(folder_of(path)), file};
     files->carried += 8 + size;
     files->left -= 8 + size;
   } else {
@@ -115,6 +123,36 @@ File next_file(Files* files, const char* path) {
 char* folder_of(const char* path) {
   const char* slash = strrchr(path, '/');
   return copied(path, slash ? (size_t)(slash - path) + 1 : 0);
+}
+
+static void write_file(const char* path, File file) {
+  const char* part = joined(path, ".part", "");
+  FILE* stream = fopen(part, "wb");
+  bool whole = stream && fwrite(file.data, 1, file.size, stream) == file.size;
+  if (stream) whole = !fclose(stream) && whole;
+  if (!whole) fail(BAD_INPUT, "cannot write %s", path);
+  remove(path); /* not all systems replace a file by another name */
+  if (rename(part, path)) fail(BAD_INPUT, "cannot write %s", path);
+}
+
+void write_files(const char* folder, const Carried* files, size_t count) {
+  const char** names = take(count + 1, sizeof *names);
+  if (mkdir(folder, 0777) && errno != EEXIST) fail(BAD_INPUT, "cannot make the folder %s", folder);
+  for (size_t i = 0; i < count; ++i) {
+    size_t same = 0, number = 1;
+    const char* name = files[i].name;
+    for (; same < i; ++same) {
+      if (strcmp(names[same], name) != 0) continue;
+      File a = files[i].file, b = files[same].file;
+      if (a.size == b.size && !memcmp(a.data, b.data, a.size)) break;
+      char before[32];
+      snprintf(before, sizeof before, "%zu-", ++number);
+      name = joined(before, files[i].name, "");
+      same = NONE; /* look for the new name from the beginning */
+    }
+    names[i] = name;
+    if (same == i) write_file(joined(folder, "/", name), files[i].file);
+  }
 }
 
 bool exists(const char* path) {

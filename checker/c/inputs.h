@@ -78,6 +78,8 @@ typedef struct {
   bool* disabled;      /* for each two links, whether the SRDF disables their pair */
   size_t disabled_count;
   uint8_t digest[32];
+  Carried* carried; /* by the certificate, as it has them */
+  size_t carried_count;
 } Inputs;
 
 /* What files are given; NULL for those that the certificate carries, and for no SRDF. */

@@ -6,28 +6,34 @@
 #include "verify.h"
 
 static const char USAGE[] =
-    "usage: evenroad-verify [--package NAME=FOLDER] [--path PATH] certificate [robot] [scene] [srdf]\n"
+    "usage: evenroad-verify [--package NAME=FOLDER] [--path CSV] [--start VALUES] [--goal VALUES] [--write FOLDER]\n"
+    "                       certificate [robot] [scene] [srdf]\n"
     "Check that a path is proved free of contact: 0 if it is, 1 if the certificate is refused, 2 for bad input.\n"
-    "- or no robot or scene: the one that the certificate carries.\n";
+    "- or no robot or scene: the one that the certificate carries, which --write writes.\n"
+    "--path is the table, --start and --goal the values of the joints, that must be what is proved.\n";
 
 enum { MOST_PACKAGES = 64 };
 
 /* What is asked for; set before anything can fail. */
 typedef struct {
-  const char *certificate, *path, *packages[MOST_PACKAGES];
+  const char *certificate, *path, *start, *goal, *folder, *package, *packages[MOST_PACKAGES];
   Given given;
 } Asked;
 
 /* Read the command line; false if it is none. */
 static bool understood(int count, char** words, Asked* asked) {
   const char** files[] = {&asked->certificate, &asked->given.robot, &asked->given.scene, &asked->given.srdf};
-  int taken = 0;
+  const char* const names[] = {"--package", "--path", "--start", "--goal", "--write"};
+  const char** options[] = {&asked->package, &asked->path, &asked->start, &asked->goal, &asked->folder};
+  size_t taken = 0, known = sizeof names / sizeof *names;
   for (int i = 1; i < count; ++i) {
-    bool package = !strcmp(words[i], "--package"), path = !strcmp(words[i], "--path"), none = !strcmp(words[i], "-");
-    if (package || path) {
-      if (++i == count || (package && asked->given.package_count == MOST_PACKAGES)) return false;
-      if (path) asked->path = words[i];
-      if (package) asked->packages[asked->given.package_count++] = words[i];
+    size_t option = 0;
+    bool none = !strcmp(words[i], "-");
+    while (option < known && strcmp(words[i], names[option]) != 0) ++option;
+    if (option < known) {
+      if (++i == count || (option == 0 && asked->given.package_count == MOST_PACKAGES)) return false;
+      *options[option] = words[i];
+      if (option == 0) asked->packages[asked->given.package_count++] = words[i];
     } else if (taken == 4 || (words[i][0] == '-' && !none)) {
       return false;
     } else {
@@ -36,6 +42,30 @@ static bool understood(int count, char** words, Asked* asked) {
   }
   asked->given.packages = asked->packages;
   return asked->certificate != NULL;
+}
+
+static void check(const Asked* asked) {
+  const Certificate* certificate = read_certificate(read_file(asked->certificate));
+  const Inputs* inputs = read_inputs(asked->given, certificate);
+  bool of_none = certificate->of_no_path;
+  NoPath shown = {0};
+  Proved proved = {0};
+  if (of_none) {
+    shown = verify_no_path(inputs, certificate);
+  } else {
+    proved = verify(inputs, certificate);
+  }
+  if (asked->path && of_none) fail(REFUSED, "it proves that there is no path");
+  if (asked->path) require_same_path(certificate, asked->path);
+  size_t last = certificate->points - 1;
+  require_end(certificate, "start", asked->start, 0, 1);
+  require_end(certificate, "goal", asked->goal, of_none ? 1 : last, of_none ? last : 1);
+  if (asked->folder) write_files(asked->folder, inputs->carried, inputs->carried_count);
+  if (of_none) {
+    print_no_path(&shown);
+  } else {
+    print_proved(&proved);
+  }
 }
 
 int main(int count, char** words) {
@@ -47,19 +77,7 @@ int main(int count, char** words) {
   int code = setjmp(on_failure);
   if (code == REFUSED) printf("REFUSED: %s\n", failure);
   if (code == BAD_INPUT) fprintf(stderr, "evenroad-verify: %s\n", failure);
-  if (!code) {
-    const Certificate* certificate = read_certificate(read_file(asked.certificate));
-    const Inputs* inputs = read_inputs(asked.given, certificate);
-    if (certificate->of_no_path) {
-      NoPath shown = verify_no_path(inputs, certificate);
-      if (asked.path) fail(REFUSED, "it proves that there is no path");
-      print_no_path(&shown);
-    } else {
-      Proved proved = verify(inputs, certificate);
-      if (asked.path) require_same_path(certificate, asked.path);
-      print_proved(&proved);
-    }
-  }
+  if (!code) check(&asked);
   release(NULL);
   return code;
 }

@@ -134,7 +134,7 @@ static Ball* read_balls(const Model* model) {
     double numbers[4];
     for (int k = 0; k < 4; ++k) {
       numbers[k] = float_at(data + 2 + 4 * k);
-      if (!(fabs(numbers[k]) < 1e9)) fail(REFUSED, "a ball that is no number");
+      if (!(fabs(numbers[k]) <= FARTHEST)) fail(REFUSED, "a ball that is no number, or too large");
     }
     Ball ball = {(size_t)little_endian(data, 2), {numbers[0], numbers[1], numbers[2]}, numbers[3]};
     if (ball.body >= model->body_count + model->inputs->obstacle_count) fail(REFUSED, "a ball in no body");

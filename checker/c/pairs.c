@@ -89,7 +89,7 @@ static bool may_touch(const Model* model, const Body* held, const Body* other) {
   if (other->attached == NONE && other->link == held->link) return true;
   const Entry* touches = model->inputs->attached[held->attached].touches;
   for (const Entry* each = touches ? touches->child : NULL; each; each = each->next) {
-    if (!strcmp(each->text, other->name)) return true;
+    if (!strcmp(each->text, other->name) && obstacle_named(model->inputs, each->text) == NONE) return true;
   }
   return false;
 }

@@ -5,7 +5,7 @@
 
 enum { FINE = 64 }; /* parts of a curve, in which what is near it is looked for */
 
-static const double STILL = 1e-9;
+static const double STILL = 1e-9; /* how near values count as the same */
 
 bool is_straight(const Certificate* certificate) {
   size_t joints = certificate->joint_count;
@@ -158,4 +158,19 @@ void require_same_path(const Certificate* certificate, const char* path) {
     same = rows[i] == certificate->values[i / joints * certificate->degree * joints + i % joints];
   }
   if (!same) fail(REFUSED, "%s has other waypoints than the certificate", path);
+}
+
+void require_end(const Certificate* certificate, const char* name, const char* said, size_t first, size_t count) {
+  size_t joints = certificate->joint_count;
+  double* state = take(joints, sizeof *state);
+  bool same = false;
+  if (!said) return;
+  read_numbers(said, state, joints, name);
+  for (size_t i = first; i < first + count && !same; ++i) {
+    same = true;
+    for (size_t k = 0; k < joints; ++k) {
+      same = same && fabs(certificate->values[i * joints + k] - state[k]) <= STILL;
+    }
+  }
+  if (!same) fail(REFUSED, "it is about another %s", name);
 }

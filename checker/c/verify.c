@@ -13,6 +13,7 @@ Inputs* read_inputs(Given given, const Certificate* certificate) {
   const char *own[] = {certificate->robot, certificate->scene}, *paths[] = {given.robot, given.scene};
   files.carried = certificate->carried;
   files.left = certificate->carried_size;
+  files.taken = take(certificate->carried_count, sizeof *files.taken);
   sha256_begin(&files.hash);
   for (int i = 0; i < 2; ++i) {
     files.own = own[i] != NULL;
@@ -25,6 +26,8 @@ Inputs* read_inputs(Given given, const Certificate* certificate) {
   }
   if (files.left) fail(REFUSED, "it carries more files than it needs");
   sha256_end(&files.hash, inputs->digest);
+  inputs->carried = files.taken;
+  inputs->carried_count = files.taken_count;
   return inputs;
 }
 

@@ -19,6 +19,9 @@ bool is_straight(const Certificate* certificate);
 /* Refuse unless the rows of a CSV are the waypoints of a certificate, or follow its curves within their tolerance. */
 void require_same_path(const Certificate* certificate, const char* path);
 
+/* Refuse unless a start or goal, if one is said, is one of `count` points of a certificate. */
+void require_end(const Certificate* certificate, const char* name, const char* said, size_t first, size_t count);
+
 /* Print what was proved, about which bodies, and what is not claimed. */
 void print_proved(const Proved* proved);
 void print_no_path(const NoPath* shown);

@@ -1,5 +1,7 @@
 """What a checker does not read is carried as plain files: scenes and robots of other formats, and stages of a task."""
 
+import subprocess
+
 import numpy as np
 import pytest
 import trimesh
@@ -13,6 +15,7 @@ from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import main as verify
 from evenroad_verify.errors import BadInput, Refused
+from tests.certificates.checker_in_c import program
 from tests.certificates.small import URDF, sources_in
 from tests.certificates.written import accepts, box_reach, with_digest
 
@@ -82,6 +85,35 @@ def test_what_is_carried_can_be_written_and_read_by_evenroad(tmp_path):
     assert verify([str(tmp_path / "arm.cert"), "--write", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / "robot.urdf").read_text() == URDF
     assert er.load_scene(tmp_path / "out" / "scene.yaml").fingerprint() == scene.fingerprint()
+
+
+def test_carried_files_are_written_once_accepted_and_under_names_of_their_own(tmp_path):
+    """Two meshes go by one name in two folders; a file of which a byte was changed writes nothing."""
+    for folder, radius in (("one", 0.05), ("two", 0.1)):
+        (tmp_path / folder).mkdir()
+        trimesh.creation.icosphere(1, radius).export(tmp_path / folder / "ball.stl")
+    mesh = "  {}: {{shape: mesh, file: {}/ball.stl, xyz: [{}, 0, 0]}}\n"
+    placed = [mesh.format(*each) for each in (("a", "one", 1.3), ("b", "two", -1.3), ("c", "one", 1.5))]
+    sources = sources_in(tmp_path, "obstacles:\n" + "".join(placed))
+    world = er.ArmWorld(er.load_robot(sources.robot), er.load_scene(sources.scene))
+    certify(world, np.array([[-0.1], [0.1]]), Sources(sources.robot, sources.scene, embed=True), tmp_path / "own.cert")
+    meshes = {"ball.stl": tmp_path / "one" / "ball.stl", "2-ball.stl": tmp_path / "two" / "ball.stl"}
+    data = (tmp_path / "own.cert").read_bytes()
+    for name, (code, content) in {"own": (0, data), "broken": (1, data.replace(b"radius=", b"radius ="))}.items():
+        (tmp_path / f"{name}.cert").write_bytes(content)
+        for number, check in enumerate((verify, in_c)):
+            out = tmp_path / f"{name}{number}"
+            assert check([str(tmp_path / f"{name}.cert"), "--write", str(out)]) == code
+            if code:
+                assert not out.exists()
+                continue
+            assert {each.name for each in out.iterdir()} == {*meshes, "robot.urdf", "robot.srdf", "scene.yaml"}
+            assert all((out / each).read_bytes() == file.read_bytes() for each, file in meshes.items())
+
+
+def in_c(words):
+    """Return the exit code of the checker in C."""
+    return subprocess.run([program("command"), *words], capture_output=True).returncode
 
 
 BALL = '<collision><geometry><sphere radius="2"/></geometry></collision>'

@@ -117,6 +117,35 @@ def test_closed_meshes_are_solid(suffix, radius, many, tmp_path):
     assert many.accepts(certificate) == accepts(certificate, inputs_of(sources)) == (radius == 0.05)
 
 
+COLLADA = """<COLLADA><library_geometries><geometry id="g"><mesh>
+<source id="s"><float_array id="f" count="{count}">{corners}</float_array></source>
+<vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
+<triangles><input semantic="VERTEX" source="#v" offset="0"/><p>{first}</p></triangles>
+<triangles><input semantic="VERTEX" source="#v" offset="0"/><p>{second}</p></triangles></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="x"><node><instance_geometry url="#g"/></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#x"/></scene></COLLADA>"""
+
+
+@pytest.mark.parametrize("hole", [False, True])
+def test_a_closed_collada_mesh_of_two_materials_is_solid(hole, many, tmp_path):
+    """The ball is within the shell, which is one of a box around it: half of its triangles have another material."""
+    box = trimesh.creation.box((1.0, 1.0, 1.0)).apply_translation([1.0, 0.0, 0.0])
+    box.update_faces(np.arange(12) >= hole)
+    halves = {
+        name: " ".join(map(str, some.ravel())) for name, some in (("first", box.faces[:5]), ("second", box.faces[5:]))
+    }
+    corners = " ".join(map(repr, box.vertices.ravel().tolist()))
+    (tmp_path / "shell.dae").write_text(COLLADA.format(count=24, corners=corners, **halves))
+    box.export(tmp_path / "shell.stl")
+    scene = "obstacles:\n  shell: {shape: mesh, file: shell.stl}\n"
+    _, data = certificate_in(tmp_path, scene, [[-0.05], [0.05]])
+    sources = sources_in(tmp_path, scene.replace("stl", "dae"))
+    inputs = inputs_of(sources)
+    data = with_digest(data, inputs)
+    assert many.read(sources.robot, sources.scene) == ACCEPTED
+    assert many.agrees(data, inputs) is hole
+
+
 @pytest.mark.parametrize("line", ["outer loop vertex 0 0 0", "vertex 0 0 0 vertex 1 0 0"])
 def test_corners_that_share_a_line_of_an_stl_are_bad_input(line, many, tmp_path):
     facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"

@@ -1,6 +1,7 @@
 """Certificates that there is no path: the checker in C says of each file what the one in Python says."""
 
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 import evenroad as er
 from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import main
-from tests.certificates.checker_in_c import ACCEPTED, ManyChecks, program
+from tests.certificates.checker_in_c import ACCEPTED, BAD_INPUT, REFUSED, ManyChecks, program
 from tests.certificates.no_path import TIP, Parts, Place, at, flat_arm, posts
 
 MESH = '<mesh filename="bar.stl"/>'
@@ -57,6 +58,35 @@ def test_both_agree_on_files_in_which_something_was_changed(caught, many):
         other[place_of_change] = rng.integers(256) if i % 2 else other[place_of_change] ^ (1 << rng.integers(8))
         accepted += many.agrees(other, place.inputs)
     assert 0 < accepted < 120
+
+
+def test_start_and_goals_can_be_compared_with_those_of_a_query(caught):
+    place, data = caught
+    (place.folder / "none.cert").write_bytes(data)
+    words = [str(place.folder / "none.cert"), str(place.sources.robot), str(place.sources.scene)]
+    is_pose = b"\ngoals 0" in data
+    asked = {
+        ("--start", "0 0.3"): ACCEPTED,
+        ("--start", "0.1 0.3"): REFUSED,
+        ("--start", "0.3"): BAD_INPUT,
+        ("--goal", "1.8 0.1"): REFUSED if is_pose else ACCEPTED,
+        ("--goal", "0 0.3"): REFUSED,
+    }
+    for (option, values), code in asked.items():
+        assert main([*words, option, values]) == code
+        assert subprocess.run([program("command"), *words, option, values], capture_output=True).returncode == code
+
+
+def test_a_ball_without_a_radius_is_a_point_of_its_body(caught, many):
+    place, data = caught
+    parts = Parts.of(data)
+    assert many.read(place.sources.robot, place.sources.scene) == ACCEPTED
+    for radius, may_hold in ((0.0, True), (-1e-6, False)):
+        balls = parts.balls.copy()
+        balls["ball"][-1, 3] = radius
+        forged = replace(parts, balls=np.append(parts.balls, balls[-1:]))
+        count = str(len(parts.balls) + 1)
+        assert many.agrees(forged.saying("balls", count).data, place.inputs) is may_hold
 
 
 def test_a_robot_that_reaches_beyond_a_plane_is_refused(caught, many):

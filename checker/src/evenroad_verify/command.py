@@ -12,7 +12,7 @@ import numpy as np
 
 from evenroad_verify.certificate import Certificate, read_certificate
 from evenroad_verify.claim import Claim, Inputs, claim_of, read_inputs
-from evenroad_verify.errors import BadInput, Floats, Refused, demand
+from evenroad_verify.errors import BadInput, Floats, Refused, demand, numbers
 from evenroad_verify.no_path import MAGIC as OF_NO_PATH
 from evenroad_verify.no_path import Shown, read_no_path, verify_no_path
 from evenroad_verify.paths import require_same_path
@@ -20,6 +20,8 @@ from evenroad_verify.proof import prove
 from evenroad_verify.solids import require_outside
 
 ACCEPTED, REFUSED, BAD_INPUT = 0, 1, 2
+_SAME = 1e-9
+"""How near a start or goal is to one that counts as the same [rad or m]."""
 
 
 @dataclass(frozen=True)
@@ -53,20 +55,29 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--write", type=Path, metavar="FOLDER", help="write the files that the certificate carries")
     parser.add_argument("--package", action="append", default=[], help="NAME=FOLDER of a ROS package with meshes")
     parser.add_argument("--path", type=Path, help="a CSV of waypoints, or of a trajectory, that must be what is proved")
+    ends = "values of the joints, in the order in which they are printed:"
+    parser.add_argument("--start", help=f"{ends} where all that is proved must begin")
+    parser.add_argument("--goal", help=f"{ends} where the path must end, or one of the goals")
     asked = parser.parse_args(words)
     packages = {name: Path(folder) for name, _, folder in (each.partition("=") for each in asked.package)}
     try:
         data = asked.certificate.read_bytes()
         is_of_path = not data.startswith(OF_NO_PATH)
-        carrier = read_certificate(data) if is_of_path else read_no_path(data).terminals
+        if is_of_path:
+            carrier = read_certificate(data)
+            goals = carrier.curves[-1:, 2]
+        else:
+            of_none = read_no_path(data)
+            carrier, goals = of_none.terminals, of_none.terminals.curves[: of_none.goals, 2]
         inputs = read_inputs(asked.robot, asked.scene, asked.srdf, packages, carrier)
-        for name, content in inputs.carried if asked.write else ():
-            asked.write.mkdir(parents=True, exist_ok=True)
-            (asked.write / name).write_bytes(content)
         lines = _lines(verify(data, inputs)) if is_of_path else _lines_of_no_path(verify_no_path(data, inputs))
         if asked.path is not None:
             demand(is_of_path, "it proves that there is no path")
             require_same_path(carrier, asked.path)
+        _require_end("start", asked.start, carrier.curves[:1, 0])
+        _require_end("goal", asked.goal, goals)
+        if asked.write is not None:
+            _write(asked.write, inputs.carried)
     except Refused as error:
         print(f"REFUSED: {error}")
         return REFUSED
@@ -79,6 +90,26 @@ def main(words: Sequence[str] | None = None) -> int:
 
 def _file(word: str) -> Path | None:
     return None if word == "-" else Path(word)
+
+
+def _require_end(name: str, said: str | None, known: Floats) -> None:
+    """Raise Refused unless a start or goal, if it is given, is one of those of a certificate, (n, joints)."""
+    if said is not None:
+        same = (np.abs(known - numbers(said, known.shape[1])) <= _SAME).all(axis=1).any()
+        demand(same, f"it is about another {name}")
+
+
+def _write(folder: Path, carried: Sequence[tuple[str, bytes]]) -> None:
+    """Write files that a certificate carries; other files of the same name have a number before it."""
+    folder.mkdir(parents=True, exist_ok=True)
+    written: dict[str, bytes] = {}
+    for name, content in carried:
+        own, count = name, 1
+        while written.setdefault(own, content) != content:
+            count += 1
+            own = f"{count}-{name}"
+        (folder / f"{own}.part").write_bytes(content)
+        (folder / f"{own}.part").replace(folder / own)
 
 
 def _lines_of_no_path(shown: Shown) -> list[str]:

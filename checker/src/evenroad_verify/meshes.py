@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from evenroad_verify.errors import Floats, Ints, Pose, number, numbers, require
-from evenroad_verify.files import attribute, only, parse_xml
+from evenroad_verify.files import attribute, only, parse_xml, required
 from evenroad_verify.shapes import Shape, rotation_about, surface
 
 _STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
@@ -17,11 +17,11 @@ _DEEPEST = 50
 
 
 def read_mesh(data: bytes, name: str, scale: Floats) -> list[Shape]:
-    """Return the surfaces of a file: one of an STL or OBJ, one for each part of a COLLADA file."""
+    """Return the surfaces of a file: one of an STL or OBJ, one for each mesh that stands in a COLLADA file."""
     suffix = Path(name).suffix.lower()
     require(suffix in (".stl", ".obj", ".dae"), f"meshes are STL, OBJ or DAE, not {name}")
     if suffix == ".dae":
-        parts = [surface(triangles, at, scale) for triangles, at in _collada(data, name)]
+        parts = [surface(triangles, at, scale) for triangles, at in _collada(data, name) if len(triangles)]
         require(parts, f"{name} has no triangles")
         return parts
     count = int.from_bytes(data[80:84], "little")
@@ -61,7 +61,7 @@ def _fans(faces: list[list[int]], corners: int) -> Ints:
 
 
 def _collada(data: bytes, name: str) -> Iterator[tuple[Floats, Pose]]:
-    """Yield the triangles of each part as the file has them, and the affine map, in metres, of the nodes above it."""
+    """Yield the triangles of each mesh as the file has them, and the affine map, in metres, of the nodes above it."""
     root = parse_xml(data, name)
     ids = {each.get("id"): each for each in root.iter() if each.get("id")}
     asset = only(root, "asset")
@@ -72,10 +72,10 @@ def _collada(data: bytes, name: str) -> Iterator[tuple[Floats, Pose]]:
     budget = [len(data)]
     for node in _target(ids, attribute(scene, "url")).findall("node"):
         for geometry, (turn, shift) in _instances(ids, node, (np.eye(3), np.zeros(3)), 0):
-            for triangles in _parts(ids, geometry):
-                budget[0] -= len(triangles)
-                require(budget[0] > 0, f"{name} has more triangles than bytes")
-                yield triangles, (metre * turn, metre * shift)
+            triangles = _triangles(ids, geometry)
+            budget[0] -= len(triangles)
+            require(budget[0] > 0, f"{name} has more triangles than bytes")
+            yield triangles, (metre * turn, metre * shift)
 
 
 def _target(ids: dict[str | None, ET.Element], url: str) -> ET.Element:
@@ -112,13 +112,13 @@ def _step(kind: str, text: str) -> Pose:
     return (np.eye(3), values) if kind == "translate" else (np.diag(values), np.zeros(3))
 
 
-def _parts(ids: dict[str | None, ET.Element], geometry: ET.Element) -> Iterator[Floats]:
-    require(only(geometry, "mesh") is not None, "a geometry is no mesh")
-    for mesh in geometry.findall("mesh"):
-        for part in mesh:
-            require(part.tag not in ("trifans", "tristrips"), f"a mesh has <{part.tag}>")
-            if part.tag in ("triangles", "polylist", "polygons"):
-                yield _part(ids, part)
+def _triangles(ids: dict[str | None, ET.Element], geometry: ET.Element) -> Floats:
+    """Return all triangles of a geometry: a closed surface may be of several parts, one for each material."""
+    mesh = required(geometry, "mesh")
+    unknown = {part.tag for part in mesh} & {"trifans", "tristrips"}
+    require(not unknown, f"a mesh has {', '.join(unknown)}")
+    parts = [_part(ids, part) for part in mesh if part.tag in ("triangles", "polylist", "polygons")]
+    return np.concatenate([np.zeros((0, 3, 3)), *parts])
 
 
 def _part(ids: dict[str | None, ET.Element], part: ET.Element) -> Floats:

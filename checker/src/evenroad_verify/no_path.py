@@ -81,7 +81,7 @@ def _no_path(said: dict[str, list[str]], body: bytes) -> NoPath:
     demand(np.isfinite(terminals).all() and np.abs(terminals).max() <= FARTHEST, "an end is no number, or too large")
     table = np.frombuffer(pieces[1], np.dtype([("body", "<u2"), ("ball", "<f4", 4)]))
     ball = np.concatenate([table["body"][:, None], table["ball"]], axis=1, dtype=float)
-    sane = np.isfinite(ball).all() and (ball[:, 4] > 0.0).all() and not (np.abs(ball[:, 1:]) > FARTHEST).any()
+    sane = np.isfinite(ball).all() and (ball[:, 4] >= 0.0).all() and not (np.abs(ball[:, 1:]) > FARTHEST).any()
     demand(sane, "a ball is no number, or too large")
     # With poses alone, the start is where its curve ends.
     goal = terminals[1:] if goals else terminals
