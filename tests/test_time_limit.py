@@ -1,6 +1,7 @@
 """`seconds` is a promise: queries of every kind end in time, by processor time, and hand out what they have."""
 
 import sys
+import threading
 import time
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 import evenroad as er
 from evenroad import _time_limit
-from evenroad._time_limit import BudgetSpent, Deadline, Pace, look_at_clock, off_the_clock, within
+from evenroad._time_limit import BudgetSpent, Deadline, Pace, Stop, look_at_clock, off_the_clock, stopped_by, within
 from evenroad.constraints import KeepUpright
 from evenroad.planning.planners.growing import GrowingPRM
 from evenroad.planning.planners.trees import GridSearch
@@ -216,3 +217,37 @@ def test_compiled_loops_end_with_the_time_of_their_thread(caged):
         caged.valid(q)
     assert time.process_time() - began < 0.005 + SPARE
     assert caged.valid(q[:16]).shape == (16,)
+
+
+def test_another_thread_ends_a_query_before_its_time(caged):
+    """The trees of compiled code look at it, and the loops of Python."""
+    stop, results = Stop(), []
+
+    def query():
+        with stopped_by(stop):
+            results.append(er.plan(caged, HOME, UPRIGHT, seconds=20.0))
+
+    thread = threading.Thread(target=query)
+    thread.start()
+    thread.join(0.2)
+    assert thread.is_alive()
+    began = time.process_time()
+    stop.set()
+    thread.join(5.0)
+    assert time.process_time() - began < SPARE
+    assert results[0].status is Status.BUDGET_SPENT
+
+
+def test_a_stop_is_over_where_its_block_is():
+    stop = Stop()
+    stop.set()
+    with stopped_by(stop):
+        assert Deadline().is_over
+        assert Deadline().left == 0.0
+        assert _time_limit.seconds_left() == 0.0
+        with stopped_by(Stop()):
+            look_at_clock()
+        with pytest.raises(BudgetSpent):
+            look_at_clock()
+    look_at_clock()
+    assert not Deadline().is_over

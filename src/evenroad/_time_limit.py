@@ -17,7 +17,9 @@ from time import perf_counter as now
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._native.time_limit import Stop as Stop
 from evenroad._native.time_limit import end_after as _end_after
+from evenroad._native.time_limit import stop_early as _stop_early
 
 _FIRST_BATCH = 4
 """Number of rows in the first batch of checks where time is limited."""
@@ -51,12 +53,12 @@ class Deadline:
     @property
     def left(self) -> float:
         """The seconds that are left, >= 0."""
-        return max(self.at - now(), 0.0)
+        return 0.0 if _is_stopped() else max(self.at - now(), 0.0)
 
     @property
     def is_over(self) -> bool:
         """Whether the time is over."""
-        return now() >= self.at
+        return now() >= self.at or _is_stopped()
 
     def part(self, began: float, share: float) -> Deadline:
         """Return the end of a share of the time that began at an instant."""
@@ -65,9 +67,14 @@ class Deadline:
 
 class _Here(threading.local):
     at = math.inf
+    stop: Stop | None = None
 
 
 _here = _Here()
+
+
+def _is_stopped() -> bool:
+    return _here.stop is not None and _here.stop.is_set
 
 
 def _end_at(at: float) -> None:
@@ -101,6 +108,23 @@ class within(until):
         self._at, self._outer = math.inf if seconds is None else now() + seconds, _here.at
 
 
+class stopped_by:
+    """Let another thread end the work of this one in a block, as if its time were over: ``with stopped_by(stop):``."""
+
+    __slots__ = ("_outer", "_stop")
+
+    def __init__(self, stop: Stop) -> None:
+        self._stop, self._outer = stop, _here.stop
+
+    def __enter__(self) -> None:
+        _here.stop = self._stop
+        _stop_early(self._stop)
+
+    def __exit__(self, *_: object) -> None:
+        _here.stop = self._outer
+        _stop_early(self._outer)
+
+
 class off_the_clock:
     """Do what a query needs before its time begins, without a limit: the deadline moves by what the block takes."""
 
@@ -118,7 +142,7 @@ class off_the_clock:
 
 def look_at_clock(ahead: float = 0.0) -> None:
     """Raise BudgetSpent where the time of this thread is over, or what comes next takes longer than is left [s]."""
-    if now() + ahead >= _here.at:
+    if now() + ahead >= _here.at or _is_stopped():
         raise BudgetSpent
 
 
@@ -130,7 +154,7 @@ def require_time_for(module: str) -> None:
 
 def seconds_left() -> float:
     """Return how much time this thread has left, inf without a limit [s]."""
-    return _here.at - now()
+    return 0.0 if _is_stopped() else _here.at - now()
 
 
 def is_limited() -> bool:

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <exception>
 
@@ -16,10 +17,18 @@ struct TimeIsOver : std::exception {
   const char* what() const noexcept override { return "the time is over"; }
 };
 
+/// Lets another thread end the work of a query early.
+struct Stop {
+  std::atomic<bool> is_set = false;
+};
+
 /// The deadline of this thread.
 constinit inline thread_local SteadyClock::time_point end_of_time = SteadyClock::time_point::max();
+/// What ends the work of this thread before its deadline, or null.
+constinit inline thread_local const Stop* early_stop = nullptr;
 
 inline void look_at_clock() {
+  if (early_stop != nullptr && early_stop->is_set.load(std::memory_order_relaxed)) throw TimeIsOver();
   if (end_of_time != SteadyClock::time_point::max() && SteadyClock::now() >= end_of_time) throw TimeIsOver();
 }
 
