@@ -46,9 +46,10 @@ MAY_IMPORT = {
     "testing": BASE | {"space", "world"},
     "viz": BASE | {*VALUES, *OF_ARMS, "driving", "constraints", "roadmap", "planning"},
     "adapters": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
+    "ros2": BASE | {*VALUES, *OF_ARMS, "driving", "planning", "trajectory"},
     "cli": BASE
     | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory", "task", "datasets", "io", "viz"}
-    | {"certificates", "driving"},
+    | {"certificates", "driving", "ros2"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

@@ -3,7 +3,6 @@
 import math
 import subprocess
 import sys
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -203,17 +202,6 @@ def test_what_would_be_left_out_is_refused(make, said, objects, changes):
         _module("messages").planning_scene(message, load_robot("ur5"))
 
 
-def test_messages_of_ros_get_lists(monkeypatch):
-    """Setters of ROS refuse arrays."""
-    point = SimpleNamespace(JointTrajectoryPoint=lambda **fields: fields)
-    monkeypatch.setitem(sys.modules, "trajectory_msgs", SimpleNamespace(msg=point))
-    monkeypatch.setitem(sys.modules, "trajectory_msgs.msg", point)
-    kind = "trajectory_msgs/msg/JointTrajectoryPoint"
-    made = _module("messages").ros_message(kind, positions=np.array([1.0, 2.0]), effort=np.zeros(0))
-    assert made == {"positions": [1.0, 2.0], "effort": []}
-    assert type(made["positions"]) is list
-
-
 def test_a_state_that_says_too_little_is_refused(make):
     message = _planning_scene(make, {"elbow_joint": 1.0}, [])
     with pytest.raises(InvalidValue, match="shoulder_pan_joint"):
@@ -222,7 +210,7 @@ def test_a_state_that_says_too_little_is_refused(make):
 
 def test_nothing_of_ros_is_needed_until_a_node_runs():
     code = (
-        "import sys, map_planner, arm_planner, messages;"
+        "import sys, arm_planner, messages, evenroad.ros2.map_node;"
         " print([m for m in ('rclpy', 'nav_msgs', 'moveit_msgs', 'rosbags') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=FOLDER, capture_output=True, text=True, check=True)

@@ -8,11 +8,12 @@ Takes ``/planning_scene`` (moveit_msgs/PlanningScene, whole, with the state of t
 
 from typing import Any
 
-from messages import Make, planning_scene, standing
+from messages import planning_scene, standing
 
 import evenroad as er
 from evenroad.planning.read_problem import arm_problem
 from evenroad.robot import Robot
+from evenroad.ros2.messages import Make, ros_message
 from evenroad.trajectory import arm_trajectory
 from evenroad.trajectory.formats import joint_trajectory
 
@@ -31,7 +32,6 @@ def answer(make: Make, message: Any, robot: Robot, goal: str, speed: float = 1.0
 def main() -> None:
     """Run until the node is stopped."""
     import rclpy
-    from messages import ros_message
     from moveit_msgs.msg import PlanningScene
     from trajectory_msgs.msg import JointTrajectory
 

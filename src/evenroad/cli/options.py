@@ -19,6 +19,8 @@ Positional = Annotated[_T, "positional"]
 """A word by its position, without a name."""
 Repeatable = Annotated[_T, "repeatable"]
 """An option that may be given several times: a tuple of its values."""
+Rest = Annotated[_T, "rest"]
+"""An option that takes all words that follow, whatever they look like."""
 
 READ: dict[type, tuple[str, Callable[[str], object], str]] = {
     str: ("STR", str, "a text"),
@@ -42,6 +44,8 @@ class Option(NamedTuple):
     repeatable: bool
     default: object
     """MISSING where it is required."""
+    takes_rest: bool = False
+    """Takes all words that follow."""
 
     @property
     def value(self) -> str:
@@ -98,7 +102,9 @@ def _option(field: str, hint: Any, default: object) -> Option:
     choices = get_args(kind) if get_origin(kind) is Literal else ()
     short = tuple(mark for mark in marks if mark.startswith("-"))
     names = () if "positional" in marks else (*short, f"--{field.replace('_', '-')}")
-    return Option(field, names, str if choices else kind, choices, depth > repeatable, repeatable, default)
+    return Option(
+        field, names, str if choices else kind, choices, depth > repeatable, repeatable, default, "rest" in marks
+    )
 
 
 def option_names(kind: type) -> set[str]:

@@ -23,6 +23,7 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     Raises InvalidValue or UnknownName for wrong or missing options, and SystemExit after printing help.
     """
     program, options = f"evenroad {verb}", options_of(kind)
+    words, rest = _without_rest(words, options)
     if not HELP.isdisjoint(words):
         # The other options need not be complete for help, which is imported late.
         from evenroad.cli.help import help_of
@@ -36,7 +37,7 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     if unknown:
         meant = near(unknown[0], known)
         raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}{meant and '; '}{meant}")
-    values: dict[str, object] = {}
+    values: dict[str, object] = dict(rest)
     for option in options:
         uses = given.get(option.field, [])
         if option.kind is bool:
@@ -50,6 +51,15 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     if loose:
         raise InvalidValue(f"{program} has no use for the word {shown(loose[0])}")
     return kind(**values)
+
+
+def _without_rest(words: Sequence[str], options: Sequence[Option]) -> tuple[Sequence[str], dict[str, tuple[str, ...]]]:
+    """Return the words before an option that takes all that follow, and these by its field."""
+    for option in options:
+        if option.takes_rest and option.names[0] in words:
+            at = words.index(option.names[0])
+            return words[:at], {option.field: tuple(words[at + 1 :])}
+    return words, {}
 
 
 def _sorted(
