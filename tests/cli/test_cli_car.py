@@ -1,5 +1,7 @@
 """``evenroad plan --footprint``: the record, the picture and the errors of a car's plan."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -70,3 +72,47 @@ def test_what_is_no_car_is_refused_in_one_line(run, words, says):
     assert code == 2
     assert says in err
     assert len(err.strip().splitlines()) == 1
+
+
+DISK = ("plan", "office.yaml", "--robot-radius", "0.25", "--start", "1", "2", "--goal", "8.5", "3", "--no-picture")
+CAR = (*PLAN, "--goal", "1", "2.6", "80", "--no-picture")
+
+
+@pytest.mark.usefixtures("in_an_empty_folder")
+@pytest.mark.parametrize("plan", [DISK, (*CAR, "--lateral", "0.3", "--curvature-rate", "2")])
+def test_a_robot_on_a_map_gets_its_times_in_files_and_in_the_record(run, plan):
+    from evenroad.cli.plan_file import read_plan
+    from evenroad.trajectory import load_trajectory
+
+    limits = ("--speed", "0.8", "--acceleration", "0.5", "--step", "0.02")
+    code, out, err = run(*plan, *limits, "--trajectory", "go.csv", "--trajectory", "go.json", "--trajectory", "go.yaml")
+    assert (code, err) == (0, "")
+    assert "off the path" in out
+    table = np.loadtxt("go.csv", delimiter=",", skiprows=1)
+    plain = load_trajectory("go.json")
+    np.testing.assert_array_equal(table[:, 1 : 1 + plain.positions.shape[1]], plain.positions)
+    speed = np.linalg.norm(np.diff(plain.positions[:, :2], axis=0), axis=1) / plain.times[1]
+    assert 0.0 < speed.max() <= 0.8 + 1e-9
+    kept = read_plan(Path("office.json")).trajectory
+    np.testing.assert_array_equal(kept.positions, plain.positions)
+    assert plain.source["plan"]["query"]["map"] == "office.yaml"
+
+
+@pytest.mark.usefixtures("in_an_empty_folder")
+@pytest.mark.parametrize(
+    ("plan", "words", "says"),
+    [
+        (DISK, ("--speed", "0.5"), "--speed goes with --trajectory or --timed only"),
+        (CAR, ("--lateral", "0.5"), "--lateral goes with --trajectory or --timed only"),
+        (DISK, ("--timed", "--speed", "-1"), "speed must be a finite number > 0"),
+        (CAR, ("--timed", "--curvature-rate", "0"), "curvature_rate must be a finite number > 0"),
+        (DISK, ("--trajectory", "go.script"), "format of a trajectory"),
+        (DISK, ("--trajectory", "office.json"), "another result of this plan"),
+        (DISK, ("--timed", "--lateral", "0.5"), "--lateral goes with --footprint only"),
+    ],
+)
+def test_times_that_cannot_be_are_refused_before_planning(run, plan, words, says):
+    code, _, err = run(*plan, *words)
+    assert (code, len(err.strip().splitlines())) == (2, 1)
+    assert says in err
+    assert not Path("office.json").exists()

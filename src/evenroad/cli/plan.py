@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
+from evenroad.cli.map_times import CarTimes, MapTimes
 from evenroad.cli.options import Positional, Repeatable, option_names
 from evenroad.cli.read_options import HELP, given_options, require_known_options
 from evenroad.cli.sampler import SamplerOptions
@@ -41,7 +42,8 @@ class PlanOptions(SamplerOptions):
             *("n", "sampler", "k", "connect_radius", "guarantees", "plain", "skip", "allow_fewer"),
         ),
         "times": (
-            *("timed", "trajectory", "speed", "limits", "torque", "tip_speed", "tip_acceleration"),
+            *("timed", "trajectory", "speed", "acceleration", "lateral", "curvature_rate", "angular_speed"),
+            *("angular_acceleration", "limits", "torque", "tip_speed", "tip_acceleration"),
             *("start_velocity", "goal_velocity", "deviation", "step", "controller_joints"),
         ),
         **OF_ROBOTS,
@@ -88,7 +90,7 @@ class PlanOptions(SamplerOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanDisk(PlanOptions):
+class PlanDisk(PlanOptions, MapTimes):
     """Plan a short path for a disk on a map, write a JSON result and a picture.
 
     A disk (--robot-radius) moves on a bare image (.png, .pgm, .bmp): unit = pixel, x right, y DOWN, origin in the
@@ -125,7 +127,7 @@ class PlanDisk(PlanOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanCar(PlanOptions):
+class PlanCar(PlanOptions, CarTimes):
     """Plan a short path for a car or another footprint on a map, write a JSON result and a picture of what it sweeps.
 
     All that the footprint sweeps along its curves is tested exactly.  Poses are x y angle, an angle of 0 along x.

@@ -43,6 +43,7 @@ def plan_car(plan: PlanCar) -> int:
         clearance=plan.clearance,
     )
     files = output_files(plan, map_files(plan.world), ("json", "csv") if plan.csv else ("json",))
+    plan.require_times(map_files(plan.world), files.values())
     made = made_of(world, map=str(plan.world))
     planner: Planner = default_planner(world)
     if plan.cusp_cost is not None:
@@ -66,7 +67,8 @@ def plan_car(plan: PlanCar) -> int:
     more = []
     if result.pieces is not None:
         more = [("drive", f"{len(result.pieces)} pieces, {result.cusps} changes between forwards and backwards")]
-    code = finish(files, result, record, ("x", "y", "angle"), draw, more)
+    rows, times = plan.with_times(result, {"plan": {"query": query, "made_of": made}})
+    code = finish(files, result, record | times, ("x", "y", "angle"), draw, [*more, *rows])
     return interrupted() if stopped else code
 
 

@@ -44,6 +44,7 @@ def plan_disk(plan: PlanDisk) -> int:
     gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free, rules=plan.rules)
     suffixes = ("json", "csv") if plan.csv else ("json",)
     files = output_files(plan, map_files(plan.world), suffixes)
+    plan.require_times(map_files(plan.world), files.values())
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
     made = made_of(gridmap.world(plan.robot_radius, clearance=plan.clearance), map=str(plan.world))
@@ -76,7 +77,8 @@ def plan_disk(plan: PlanDisk) -> int:
 
         record["certificate"] = guarantees(result.certificate)
         more = guarantee_rows(result.certificate)
-    code = finish(files, result, record, ("x", "y"), draw, more)
+    rows, times = plan.with_times(result, {"plan": {name: record[name] for name in ("query", "made_of")}})
+    code = finish(files, result, record | times, ("x", "y"), draw, [*more, *rows])
     return interrupted() if stopped else code
 
 

@@ -11,6 +11,7 @@ from evenroad._files import Json, read_json_file
 from evenroad._seal import has_digest
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import KEPT, made_of
+from evenroad.driving.car_world import CarWorld
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import plan_of
 from evenroad.planning.problem import Problem
@@ -19,9 +20,9 @@ from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult
 from evenroad.poses.constraint import Constraint, with_tip
 from evenroad.space.path import continued
-from evenroad.trajectory.formats import trajectory_of
-from evenroad.trajectory.trajectory import Trajectory
+from evenroad.trajectory.formats import Saved, saved_of
 from evenroad.world import World, load_map
+from evenroad.world.gridmap.disk_world import DiskWorld
 
 FILES = {
     "srdf": str | None,
@@ -33,14 +34,11 @@ FILES = {
     "padding": float | int | dict | str | None,
 }
 """Fields of a plan about its robot's files, and their types; plans of earlier versions have fewer."""
-_MAP = {
-    "map": str,
-    "robot_radius": float | int,
-    "clearance": float | int,
-    "unknown_is_free": bool,
-    "rules": str | None,
-}
+_MAP = {"map": str, "clearance": float | int, "unknown_is_free": bool, "rules": str | None}
 """Fields of a plan about its map, and their types; plans of earlier versions have no rules."""
+_DISK = {"robot_radius": float | int}
+_CAR = {"footprint": list, "turning_radius": float | int, "forward_only": bool, "holonomic": bool}
+"""Fields about what moves on the map."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ class PlanFile:
 
     problem: Problem
     result: PlanResult
-    trajectory: Trajectory | None = None
+    trajectory: Saved | None = None
     changed: tuple[str, ...] = ()
     whole: bool = False
     constraints: Constraint | None = None
@@ -61,7 +59,7 @@ class PlanFile:
 
 
 def read_plan(file: Path, robot: str | None = None, options: dict[str, Any] | None = None) -> PlanFile:
-    """Return a plan of an arm or of a disk; `robot` and `options` of its files stand in for those of the plan.
+    """Return a plan of an arm, a disk or a car; `robot` and `options` of its files stand in for those of the plan.
 
     Raises BrokenFile if it is damaged, and InvalidValue if it names no robot and scene, and no map.
     """
@@ -72,26 +70,34 @@ def plan_file_of(record: Json, file: Path, robot: str | None = None, options: di
     """Return the plan of a record of a file; errors as :func:`read_plan`."""
     result, query = plan_of(record, file)
     if "map" in query:
-        if not all(isinstance(query.get(name), kind) for name, kind in _MAP.items()):
-            raise BrokenFile(f"{file} is a damaged plan: of its map, radius, clearance or unknown cells")
-        grid = load_map(query["map"], unknown_is_free=query["unknown_is_free"], rules=query.get("rules"))
-        world = grid.world(query["robot_radius"], clearance=query["clearance"])
-        problem = Problem(world, result.start, result.goals)
+        problem = Problem(_world_on_map(query, file), result.start, result.goals)
     else:
         problem = problem_of(query, file, result.start, result.goals, robot, options)
     path = result.path
-    if path is not None:
+    if path is not None and result.pieces is None:
         # Earlier versions began within one turn.
         path = continued(path, problem.world.space, result.start)
     set_fields(result, world=problem.world, path=path)
     changed = changed_since(record.get("made_of"), problem.world)
     times = record.get("trajectory")
     has_states = isinstance(times, dict) and times.get("states") is not None
-    trajectory = trajectory_of(times["states"], file) if has_states else None
+    trajectory = saved_of(times["states"], file) if has_states else None
     whole = has_digest(record, file) and changed is not None
     return PlanFile(
         problem, result, trajectory, changed or (), whole, constraints_in(query, file), bool(query.get("via"))
     )
+
+
+def _world_on_map(query: dict[str, Json], file: Path) -> DiskWorld | CarWorld:
+    """Return the world of a plan on a map, by its query."""
+    fields = _MAP | (_CAR if "footprint" in query else _DISK)
+    if not all(isinstance(query.get(name), kind) for name, kind in fields.items()):
+        raise BrokenFile(f"{file} is a damaged plan: of its map, radius, footprint, clearance or unknown cells")
+    grid = load_map(query["map"], unknown_is_free=query["unknown_is_free"], rules=query.get("rules"))
+    if "footprint" not in query:
+        return grid.world(query["robot_radius"], clearance=query["clearance"])
+    same = {name: query[name] for name in ("footprint", "turning_radius", "holonomic", "clearance")}
+    return grid.world(**same, reverse=not query["forward_only"])
 
 
 def changed_since(kept: object, world: World) -> tuple[str, ...] | None:

@@ -38,9 +38,9 @@ def sent_plan(record: Json, file: Path, fastest: float) -> tuple[Trajectory, str
     """
     plan = plan_file_of(record, file)
     if not hasattr(plan.problem.world, "robot"):
-        raise NotAvailable(f"{file} is the plan of a disk on a map; plans of arms are sent")
+        raise NotAvailable(f"{file} is a plan on a map; plans of arms are sent")
     _require_unchanged(plan.changed, file)
-    kept = plan.trajectory
+    kept = plan.trajectory if isinstance(plan.trajectory, Trajectory) else None
     is_kept = kept is not None and bool((abs(kept.velocities) <= fastest).all())
     moves = kept if kept is not None and is_kept else _made(plan, file, fastest)
     proved = _proved(moves, plan.problem, plan.constraints, file, whole=plan.whole)

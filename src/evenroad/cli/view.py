@@ -1,4 +1,4 @@
-"""``evenroad view``: a plan, of an arm or of a disk, in the browser, as one HTML file, a picture, or a GIF."""
+"""``evenroad view``: a plan, of an arm, a disk or a car, in the browser, as one HTML file, a picture, or a GIF."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.cli.plan_file import PlanFile, read_plan
 from evenroad.collision.arm_world import ArmWorld
+from evenroad.driving.car_world import CarWorld
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.loading.find import find_robot
 from evenroad.loading.robot_file import RobotFile
@@ -27,6 +28,8 @@ from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult
 from evenroad.roadmap import Budget
+from evenroad.trajectory.car import are_free
+from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.corners import drivable
 
 SECONDS = 0.5
@@ -35,10 +38,10 @@ SECONDS = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class View(RobotOptions):
-    """Show a plan: the arm in its scene, or the disk on its map, along the path.
+    """Show a plan: the arm in its scene, or the disk or car on its map, along the path.
 
     This computer serves a page on which you move start, goal and obstacles of an arm; the path is planned again as they
-    move.  Ctrl-C ends it.  The plan of a disk is written as a page that plays offline, and opened in the browser.
+    move.  Ctrl-C ends it.  A plan on a map is written as a page that plays offline, and opened in the browser.
 
     Examples: evenroad view box-reach.json · evenroad view box-reach.json --html reach.html
     """
@@ -112,20 +115,16 @@ class View(RobotOptions):
 
     def _save_picture(self, plan: PlanFile, path: Path) -> None:
         from evenroad.viz.arm import save_arm_picture
-        from evenroad.viz.plan import save_plan_picture
 
         if isinstance(plan.problem.world, ArmWorld):
             save_arm_picture(path, plan.result, plan.problem.world, self._file(plan))
         else:
-            from evenroad.world.gridmap.disk_world import DiskWorld
-
-            assert isinstance(plan.problem.world, DiskWorld), "a plan is of an arm or of a disk"
-            save_plan_picture(path, plan.result, plan.problem.world)
+            plan.result.plot(path)
         print(f"wrote {path}")
 
     def _save_gif(self, plan: PlanFile, arm: bool) -> None:
         if not arm:
-            raise NotAvailable("--gif shows arms; --html plays the plan of a disk, too")
+            raise NotAvailable("--gif shows arms; --html plays plans on maps, too")
         from evenroad.viz.arm import save_arm_gif
 
         assert self.gif is not None
@@ -163,8 +162,12 @@ class View(RobotOptions):
 
 def _is_free(plan: PlanFile) -> bool:
     """Return whether what is shown is proved free: a file says only that it once was."""
+    world, pieces = plan.problem.world, plan.result.pieces
+    if isinstance(world, CarWorld) and pieces is not None and plan.result.solved:
+        driven = plan.trajectory if isinstance(plan.trajectory, CarTrajectory) else None
+        return are_free(world, plan.result.start, pieces, driven)
     shown = plan.result.path if plan.trajectory is None else plan.trajectory.positions
-    return shown is None or not plan.result.solved or bool(drivable(plan.problem.world, shown)[0].all())
+    return shown is None or not plan.result.solved or bool(drivable(world, shown)[0].all())
 
 
 def _times(plan: PlanFile) -> tuple[Floats, Floats] | None:

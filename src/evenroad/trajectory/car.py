@@ -11,8 +11,9 @@ from evenroad._checks import require_positive
 from evenroad.driving.car_space import CarSpace
 from evenroad.driving.car_world import CarWorld
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.trajectory.blends import Blended, with_blends
+from evenroad.trajectory.blends import Blended, clothoids_free, nearer, with_blends
 from evenroad.trajectory.car_states import CarTrajectory, jumps_of
+from evenroad.trajectory.clothoid import starts_of
 from evenroad.trajectory.corners import require_steps
 from evenroad.trajectory.drive_limits import DriveLimits
 from evenroad.trajectory.make import DEVIATION, STEP
@@ -60,9 +61,7 @@ def car_trajectory(
     deviation, step = require_positive("deviation", deviation, or_zero=True), require_positive("step", step)
     if len(pieces) == 0:
         raise InvalidValue("path must lead somewhere: its start is its goal")
-    assert isinstance(world.space, CarSpace), "a holonomic robot has no pieces"
-    sides = np.column_stack([np.sign(pieces[:, 0]), pieces[:, 1] * _lengths_of_spots(pieces, world.space)])
-    if not world.vehicle.pieces_free(world.space.steering, start, sides):
+    if not are_free(world, start, pieces):
         raise NotAvailable("the path is not proved free as its pieces are driven")
     limits = _on_the_spot(limits, world) if np.isinf(pieces[:, 0]).any() else limits
     made = Blended(np.column_stack([pieces[:, 0], pieces]), 0, 0.0)
@@ -83,9 +82,19 @@ def car_trajectory(
     return trajectory
 
 
-def _lengths_of_spots(pieces: Floats, space: CarSpace) -> Floats:
-    """Return what the lengths of pieces, (k, 2), count in the space: an angle on the spot has a length there."""
-    return np.where(np.isinf(pieces[:, 0]), space.spot, 1.0)
+def are_free(world: CarWorld, start: Floats, pieces: Floats, driven: CarTrajectory | None = None) -> bool:
+    """Return whether a car is proved free along pieces, (k, 2), from a pose, and along the blends of a trajectory."""
+    assert isinstance(world.space, CarSpace), "a holonomic robot has no pieces"
+    # On the spot, an angle counts a length in the space.
+    lengths = pieces[:, 1] * np.where(np.isinf(pieces[:, 0]), world.space.spot, 1.0)
+    rows = np.column_stack([np.sign(pieces[:, 0]), lengths])
+    if not world.vehicle.pieces_free(world.space.steering, start, rows):
+        return False
+    if driven is None or not driven.blends:
+        return True
+    near, starts = nearer(world), starts_of(driven.start, driven.pieces)
+    blends = np.flatnonzero(driven.pieces[:, 0] != driven.pieces[:, 1])
+    return all(clothoids_free(near, starts[i], driven.pieces[i : i + 1]) for i in blends)
 
 
 def _on_the_spot(limits: DriveLimits, world: CarWorld) -> DriveLimits:

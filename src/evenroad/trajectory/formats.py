@@ -22,7 +22,7 @@ from evenroad._files import Json, atomic_write, read_json_file
 from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, UnknownName
 from evenroad.trajectory.car_formats import FORMAT as OF_CARS
-from evenroad.trajectory.car_formats import PATH, Message, car_csv, car_json, car_trajectory_of, nav_path
+from evenroad.trajectory.car_formats import PATH, Message, car_csv, car_json, car_record, car_trajectory_of, nav_path
 from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.checked import require_within_limits
 from evenroad.trajectory.corners import MOST_STATES
@@ -192,14 +192,19 @@ def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None
     }
 
 
+def record_of(trajectory: Saved) -> dict[str, object]:
+    """Return a trajectory as plain JSON values for :func:`saved_of`."""
+    return car_record(trajectory) if isinstance(trajectory, CarTrajectory) else trajectory_record(trajectory)
+
+
 def _json(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
     return (json.dumps(with_digest(trajectory_record(trajectory, order)), allow_nan=False) + "\n").encode()
 
 
 def _csv(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
     names, tables = trajectory.columns(order)
-    units = ("", "/s", "/s^2")
-    header = ["time [s]", *(f"{name} [rad or m]{unit}" for unit in units for name in names)]
+    of, units = "" if _is_on_map(trajectory) else " [rad or m]", ("", "/s", "/s^2")
+    header = ["time [s]", *(f"{name}{of}{unit}" for unit in units for name in names)]
     rows = np.column_stack([trajectory.times, *tables]).tolist()
     lines = [header, *(map(repr, row) for row in rows)]
     return "".join(",".join(line) + "\n" for line in lines).encode()
