@@ -14,6 +14,7 @@ from evenroad.geometry import Mesh as Mesh
 from evenroad.geometry import PointCloud as PointCloud
 from evenroad.geometry import Pose as Pose
 from evenroad.geometry import Sphere as Sphere
+from evenroad.loading.find import list_robots as list_robots
 from evenroad.planning import FMT as FMT
 from evenroad.planning import PRM as PRM
 from evenroad.planning import PlanResult as PlanResult
@@ -25,6 +26,7 @@ from evenroad.planning import plan_many as plan_many
 from evenroad.points import PointSet as PointSet
 from evenroad.points import draw as draw
 from evenroad.points import load_points as load_points
+from evenroad.points.evenness import measure as measure
 from evenroad.roadmap import Roadmap as Roadmap
 from evenroad.roadmap import build_roadmap as build_roadmap
 from evenroad.roadmap import load_roadmap as load_roadmap

@@ -8,7 +8,8 @@ from inspect import Parameter, signature
 from types import FunctionType
 from typing import TypeVar
 
-from evenroad.errors import EvenroadError, InvalidValue, UnknownName
+from evenroad._hints import UnknownAttribute, unknown_keyword
+from evenroad.errors import EvenroadError, InvalidValue
 
 Called = TypeVar("Called", bound=Callable[..., object])
 
@@ -16,9 +17,12 @@ Called = TypeVar("Called", bound=Callable[..., object])
 def explains_calls(called: Called) -> Called:
     """Return a function, or a class with its methods, that raises UnknownName or InvalidValue for a wrong call.
 
-    Python's own TypeError names the wrong keyword, but not the known ones.
+    Python's own TypeError names the wrong keyword, but not the known ones.  A class also says what an unknown name of
+    its values is called here.
     """
     if isinstance(called, type):
+        if not any("__getattr__" in vars(each) for each in called.__mro__):
+            called.__getattr__ = _unknown_attribute  # type: ignore[attr-defined]
         for name, each in vars(called).copy().items():
             public = name == "__init__" or not name.startswith("_")
             if public and isinstance(each, FunctionType) and not hasattr(each, "__wrapped__"):
@@ -38,12 +42,19 @@ def explains_calls(called: Called) -> Called:
     return explained  # type: ignore[return-value]
 
 
+def _unknown_attribute(self: object, name: str) -> object:
+    """Raise the error of an unknown name, or that of a property that failed."""
+    if not name.startswith("__") and hasattr(type(self), name):
+        return object.__getattribute__(self, name)
+    raise UnknownAttribute(type(self), name)
+
+
 def require_options(name: str, given: Mapping[str, object], options: type, own: Sequence[str] = ()) -> None:
     """Raise UnknownName for a keyword that is neither one of a function's own, nor in its TypedDict."""
     known = (*own, *options.__annotations__)
     for keyword in given:
         if keyword not in known:
-            raise UnknownName.among(f"keyword of {name}:", keyword, known)
+            raise unknown_keyword(f"keyword of {name}", keyword, known)
 
 
 def _explained(
@@ -59,7 +70,7 @@ def _explained(
     keywords = [key for key, each in taken.items() if each.kind is not Parameter.POSITIONAL_ONLY]
     strange = [key for key in named if key not in keywords]
     if strange and len(taken) == len(every):
-        return UnknownName.among(f"keyword of {name}:", strange[0], keywords)
+        return unknown_keyword(f"keyword of {name}", strange[0], keywords)
     alone = [key for key, each in taken.items() if each.kind is Parameter.KEYWORD_ONLY]
     first = [key for key in taken if key not in alone]
     words = ", ".join([*first, *(["*", *alone] if alone else [])])

@@ -18,9 +18,9 @@ def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], ob
 
     def load(name: str) -> object:
         if name not in homes:
-            from evenroad.errors import near
+            from evenroad._hints import hint_of_module
 
-            hint = near(name, homes)
+            hint = hint_of_module(name, homes)
             raise AttributeError(f"module {package!r} has no attribute {name!r}{hint and '; '}{hint}")
         home, there = homes[name]
         if home == package:

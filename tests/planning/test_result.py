@@ -1,5 +1,6 @@
 """What one does with a plan: look at it, keep it, walk along it, drive it."""
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -106,3 +107,38 @@ def test_a_map_of_an_array_lies_as_ros_has_them():
     assert not WORLD.valid((3.2, 3.5))
     assert WORLD.valid((3.2, 0.5))
     assert np.asarray(grid.plot()).shape == (400, 600)
+
+
+def test_a_plan_is_its_path_to_numpy_and_true_if_it_is_solved():
+    assert RESULT
+    assert len(RESULT) == len(RESULT.path)
+    np.testing.assert_array_equal(np.asarray(RESULT), RESULT.path)
+    np.testing.assert_array_equal(RESULT[-1], RESULT.goal)
+    assert [row.tolist() for row in RESULT] == RESULT.path.tolist()
+    assert not BLOCKED
+    assert len(BLOCKED) == 0
+    with pytest.raises(er.errors.InvalidValue, match="there is no path in PlanResult"):
+        np.asarray(BLOCKED)
+    touching = replace(RESULT, status=er.Status.MESH_COLLISION)
+    assert not touching
+    assert len(touching) == len(RESULT)
+
+
+def test_a_trajectory_is_called_with_times_and_sampled():
+    trajectory = RESULT.trajectory(speed=1.0)
+    np.testing.assert_array_equal(trajectory(0.3), trajectory.at(0.3))
+    np.testing.assert_array_equal(np.asarray(trajectory), trajectory.positions)
+    rows = trajectory.sample(0.25)
+    times = [*np.arange(0, trajectory.duration, 0.25), trajectory.duration]
+    np.testing.assert_allclose(rows, [trajectory.at(t) for t in times], atol=1e-12)
+    assert len(trajectory.sample(trajectory.duration)) == 2
+    for dt in (0.0, 1e-9, "a"):
+        with pytest.raises(er.errors.InvalidValue, match="dt must be"):
+            trajectory.sample(dt)
+
+
+def test_what_is_not_free_is_in_collision():
+    q = [(3.2, 3.5), (0.5, 3.5)]
+    assert WORLD.in_collision(q).tolist() == [True, False]
+    assert WORLD.in_collision(q[0]) is True
+    assert er.ArmWorld("ur5", "box-reach").in_collision("home") is False

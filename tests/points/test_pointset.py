@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from PIL import Image
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
-from evenroad.points import Origin, PointSet, draw, load_points, save_points
+from evenroad.points import Origin, PointSet, draw, load_points, measure, save_points
 from evenroad.points.randomise import Symmetry, randomise
 from tests.refused import refused
 
@@ -236,3 +237,23 @@ def test_reflected_zeros_are_below_one_in_single_precision():
     flipped = [randomise(zeros, {Symmetry.REFLECTION}, rng=seed).points for seed in range(4)]
     assert max(each.max() for each in flipped) > 0.9
     assert max(each.astype(np.float32).max() for each in flipped) < 1.0
+
+
+def test_points_are_drawn_in_two_of_their_axes(tmp_path):
+    points = draw("even", 64, 3)
+    picture = points.plot(tmp_path / "points.png", axes=(0, 2))
+    with Image.open(tmp_path / "points.png") as saved:
+        np.testing.assert_array_equal(np.asarray(saved), np.asarray(picture))
+    with pytest.raises(InvalidValue, match="axes must be two numbers from 0 to 2"):
+        points.plot(axes=(0, 3))
+
+
+def test_points_are_measured_as_a_set_an_array_or_a_file(tmp_path):
+    points = draw("even", 64, 2)
+    points.save(tmp_path / "set.npy")
+    measured = measure(points)
+    assert measured == measure(points.points) == measure(tmp_path / "set.npy")
+    apart = np.linalg.norm(points.points[:, None] - points.points[None], axis=2)[np.triu_indices(64, 1)]
+    assert measured["separation"] == pytest.approx(apart.min())
+    with pytest.raises(InvalidValue, match="points must have shape"):
+        measure([1, 2])

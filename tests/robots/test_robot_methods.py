@@ -81,3 +81,28 @@ def test_a_world_answers_of_one_configuration_as_of_many():
     assert world.valid("home") is world.valid(ARM.states["home"]) is True
     assert world.explain("home") == "it is free"
     refused(er.errors.InvalidValue, "6 finite numbers", world.valid, (0.0, 1.0))
+
+
+def test_the_jacobian_is_how_the_pose_changes(tmp_path):
+    """By differences of poses, also with a joint that slides and one that follows another, three times as fast."""
+    text = """<robot name="slide"><link name="a"/><link name="b"/><link name="c"/><link name="d">
+        <collision><geometry><sphere radius="0.01"/></geometry></collision></link>
+      <joint name="turn" type="continuous"><parent link="a"/><child link="b"/>
+        <origin xyz="0.1 0 0.2" rpy="0.3 0.1 0"/><axis xyz="0 0.6 0.8"/></joint>
+      <joint name="slide" type="prismatic"><parent link="b"/><child link="c"/><origin xyz="0 0.3 0" rpy="0 0.4 0"/>
+        <axis xyz="1 0 0"/><limit lower="-1" upper="1" velocity="0.5" effort="1"/></joint>
+      <joint name="tilt" type="revolute"><parent link="c"/><child link="d"/><origin xyz="0.2 0 0"/>
+        <axis xyz="0 1 0"/><limit lower="-6" upper="6" velocity="2" effort="1"/>
+        <mimic joint="turn" multiplier="3" offset="0.1"/></joint></robot>"""
+    (tmp_path / "slide.urdf").write_text(text)
+    slide = er.load_robot(tmp_path / "slide.urdf")
+    for robot, link, q in ((er.load_robot("ur5"), "tool0", [0.1, -1.2, 0.7, 0.3, -0.4, 2.0]), (slide, "d", [0.4, 0.2])):
+        step = 1e-6
+        columns = robot.jacobian(q, link)
+        assert columns.shape == (6, robot.dof)
+        for i, change in enumerate(step * np.eye(robot.dof)):
+            before, after = (robot.fk(np.add(q, sign * change), link).matrix for sign in (-1, 1))
+            np.testing.assert_allclose(columns[:3, i], (after - before)[:3, 3] / (2 * step), atol=1e-8)
+            turn = (after[:3, :3] @ before[:3, :3].T - np.eye(3)) / (2 * step)
+            np.testing.assert_allclose(columns[3:, i], (turn[2, 1], turn[0, 2], turn[1, 0]), atol=1e-5)
+    assert slide.velocity_limits[1] == 0.5

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import FARTHEST, as_row
+from evenroad._hints import KnowsElsewhere
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.rotation import (
     BY_KEYWORD,
@@ -45,7 +46,7 @@ def _rows_of_three(points: npt.ArrayLike) -> Floats:
 
 @explains_calls
 @dataclass(frozen=True, init=False, repr=False)
-class Pose:
+class Pose(metaclass=KnowsElsewhere):
     """A rotation, then a translation: ``p -> R p + xyz``.
 
     Parameters

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from evenroad._checks import as_file
+from evenroad._hints import among_names
 from evenroad.errors import UnknownName
 
 DATA = Path(__file__).parent / "data"
@@ -31,7 +32,7 @@ def find_robot(source: str | os.PathLike[str]) -> tuple[Path, Path | None]:
     known = example_robots()
     if name not in known:
         if known:
-            raise UnknownName.among("robot", name, {*ROBOTS, *known})
+            raise among_names("robot", name, {*ROBOTS, *known}, "`evenroad robots` lists them")
         raise UnknownName(
             f"there is no robot file {name!r}, and none of this name is shipped; shipped: {', '.join(ROBOTS)};"
             " panda, kinova, xarm7 and others come with the extra: pip install 'evenroad[robots]'"
@@ -40,6 +41,22 @@ def find_robot(source: str | os.PathLike[str]) -> tuple[Path, Path | None]:
     stems = (urdf.stem, urdf.stem.removesuffix("_robot"))
     srdfs = [urdf.parent.parent / "srdf" / f"{stem}.srdf" for stem in stems]
     return urdf, next((srdf for srdf in srdfs if srdf.is_file()), None)
+
+
+def list_robots() -> tuple[str, ...]:
+    """Return the names of the robots that :func:`evenroad.load_robot` knows: the shipped ones and those of the extra.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> {"arm7", "ur5"} <= set(er.list_robots())
+    True
+    """
+    return tuple(sorted({*ROBOTS, *example_robots()}))
 
 
 def example_robots() -> dict[str, Path]:

@@ -11,7 +11,7 @@ from evenroad.planning.problem import Planner as Planner
 from evenroad.planning.problem import Problem as Problem
 from evenroad.planning.replanner import Replanner as Replanner
 from evenroad.planning.result import PlanResult as PlanResult
-from evenroad.planning.result import SearchedGraph as SearchedGraph
-from evenroad.planning.result import Stage as Stage
 from evenroad.planning.result import Status as Status
+from evenroad.planning.searched import SearchedGraph as SearchedGraph
+from evenroad.planning.searched import Stage as Stage
 from evenroad.planning.world_roadmap import WorldRoadmap as WorldRoadmap

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad._call import explains_calls
 from evenroad._checks import counted, require_extra
 from evenroad._files import atomic_write
 from evenroad._native.planning import Answer
@@ -22,6 +23,7 @@ from evenroad.planning.result import PlanResult, Status
 from evenroad.world import MeasuresPaths, World
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class PlanResults:
     """The answers to m queries, one row each.

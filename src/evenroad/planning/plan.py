@@ -14,7 +14,7 @@ from evenroad.planning.connector import Smooth
 from evenroad.planning.diagnose import with_reasons
 from evenroad.planning.finish import finished
 from evenroad.planning.make_result import out_of_time, unreached
-from evenroad.planning.planners import PLANNERS
+from evenroad.planning.planners import planner_of, unknown_planner
 from evenroad.planning.planners.prm import PRM
 from evenroad.planning.planners.trees import RRTConnect, default_planner
 from evenroad.planning.problem import Interrupted, Planner, Problem, Wanted
@@ -162,9 +162,11 @@ def solve(problem: Problem, planner: Planner | Roadmap | None = None) -> PlanRes
 
 def _as_planner(planner: object) -> Planner | Roadmap:
     """Return the planner, or the roadmap, that a value, a name or a file stands for."""
-    if isinstance(planner, str) and planner.lower() in PLANNERS:
-        return PLANNERS[planner.lower()]()
+    if isinstance(planner, str) and (make := planner_of(planner)) is not None:
+        return make()
     if isinstance(planner, str | os.PathLike):
+        if isinstance(planner, str) and "." not in planner and not os.path.exists(planner):
+            raise unknown_planner(planner)
         # Imported late: most plans read no roadmap.
         from evenroad.roadmap.npz import load_roadmap
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, Unpack
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._hints import keyword_hint
 from evenroad._time_limit import off_the_clock
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue, listed, near, shown
@@ -38,6 +39,11 @@ _NAMED = str, Pose, PoseGoal
 OF_CAR = ("footprint", "turning_radius", "reverse", "holonomic")
 OF_MAP = ("radius", *OF_CAR, "clearance", "unknown_is_free", "rules")
 _OF_WORLD = ("radius", *OF_CAR, "clearance")
+OF_PLAN = (
+    *("planner", "seconds", "limits", "smooth", "rng"),
+    *("certified", "constraints", "degrees", "tip", "frame"),
+)
+"""Keywords of plan in any world."""
 OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
 
@@ -86,7 +92,9 @@ def read_problem(
         if isinstance(world, ArmWorld) and name in OF_SCENE:
             makes = "ArmWorld(robot, scene" if name in ("clearance", "resolution") else "load_robot(file"
             raise InvalidValue(f"{unknown}; this world has its own: {makes}, {name}=...) takes it")
-        raise InvalidValue(f"{unknown}; the time limit is seconds=5, others are limits={{'motions': 1000}}")
+        hint = keyword_hint(name, OF_PLAN) or near(name, OF_PLAN)
+        others = "the time limit is seconds=5, others are limits={'motions': 1000}, and er.PRM(512) draws points"
+        raise InvalidValue(f"{unknown}; {f'{hint}; {others}' if hint else others}")
     if not is_world(world):
         raise InvalidValue(
             "world must be a World, a GridMap with radius=, or a Scene with robot=; or the name or file of one, got"
@@ -112,7 +120,7 @@ def _is_map(world: object) -> TypeGuard[GridMap]:
 def _require_known(given: Mapping[str, object], known: Sequence[str], what: str) -> None:
     for name in given:
         if name not in known:
-            hint = near(name, known) or f"known: {listed(known)}"
+            hint = keyword_hint(name, (*known, *OF_PLAN)) or near(name, (*known, *OF_PLAN)) or f"known: {listed(known)}"
             raise InvalidValue(f"{name}: unknown argument of plan in {what}; {hint}")
 
 

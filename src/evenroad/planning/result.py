@@ -10,12 +10,16 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints32
+from evenroad._arrays import Floats
 from evenroad._call import explains_calls
+from evenroad._hints import KnowsElsewhere
+from evenroad._rows import Rows
 from evenroad.collision.validate import MeshCheck
 from evenroad.driving.car_space import cusps_of
 from evenroad.errors import InvalidValue
 from evenroad.planning.result_html import as_html
+from evenroad.planning.searched import SearchedGraph as SearchedGraph
+from evenroad.planning.searched import Stage as Stage
 from evenroad.points.pointset import Origin
 from evenroad.poses.pose_goal import PoseGoal
 from evenroad.roadmap.certificate import Certificate
@@ -47,39 +51,10 @@ class Status(StrEnum):
     NOT_CERTIFIED = "not_certified"
 
 
-@dataclass(frozen=True, eq=False)
-class SearchedGraph:
-    """The milestones and motions known to be free in one query, for pictures.
-
-    `configurations`, (v, dim), are `milestones` ones not known to be invalid, then the start, then the goals; `edges`,
-    (m, 2), are free motions, as pairs of rows, smaller first.
-    """
-
-    configurations: Floats
-    edges: Ints32
-    milestones: int
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One stage of a plan that grows, or a round of one that improves in which a better path was found.
-
-    `points` is the number of points so far, and `valid` the number of valid ones; in a round these are the nodes of all
-    trees.  `edges_checked` motions were checked up to its end, `seconds` after the query began (not compared).  `cost`
-    is that of the stage's path along the roadmap, or of a round's path after shortcutting; None without a path.
-    """
-
-    points: int
-    valid: int
-    edges_checked: int
-    cost: float | None
-    seconds: float = field(default=0.0, compare=False)
-
-
 @explains_calls
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class PlanResult:
-    """The answer to one query.
+class PlanResult(Rows, metaclass=KnowsElsewhere):
+    """The answer to one query: true if it is solved, and to NumPy the rows of its path.
 
     Attributes
     ----------
@@ -231,6 +206,13 @@ class PlanResult:
     def solved(self) -> bool:
         """Whether a path was found."""
         return self.status is Status.SOLVED
+
+    def __bool__(self) -> bool:
+        return self.solved
+
+    @property
+    def _rows(self) -> Floats | None:  # type: ignore[override]
+        return self.path
 
     @property
     def goal(self) -> Floats:

@@ -1,3 +1,4 @@
+from evenroad.points.evenness import measure as measure
 from evenroad.points.npz import load_points as load_points
 from evenroad.points.npz import save_points as save_points
 from evenroad.points.pointset import Origin as Origin

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +16,12 @@ from evenroad import __version__
 from evenroad._arrays import Array, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_known
+from evenroad._hints import KnowsElsewhere
+from evenroad._rows import Rows
 from evenroad.errors import InvalidValue, shown
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
 """Largest float32 below 1. It replaces coordinates that would round up to 1."""
@@ -54,7 +58,7 @@ class Origin:
 
 @explains_calls
 @dataclass(frozen=True, eq=False)
-class PointSet:
+class PointSet(Rows, metaclass=KnowsElsewhere):
     """Points of the unit cube, frozen, with their origin.
 
     Parameters
@@ -133,6 +137,37 @@ class PointSet:
 
         write_points(self, path)
 
+    def plot(self, path: str | os.PathLike[str] | None = None, *, axes: tuple[int, int] = (0, 1)) -> Image:
+        """Return a picture of the points in two of their axes, which a notebook shows; save it if a file is named.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            A ``.png``.
+        axes : tuple of int
+            Two axes, from 0 to d - 1.
+
+        Returns
+        -------
+        PIL.Image.Image
+
+        Raises
+        ------
+        InvalidValue
+            If there are no such axes.
+        BrokenFile
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.draw("even", 64, 2).plot().mode
+        'RGB'
+        """
+        from evenroad.viz.points import plot_points
+
+        return plot_points(self, path, axes)
+
     def discrepancy(self, method: str = "CD") -> float:
         """Return the squared L2 discrepancy of the points; 0 is perfectly even.
 
@@ -190,14 +225,9 @@ class PointSet:
         """
         return PointSet(self.points, replace(self.origin, **changes))
 
-    def __len__(self) -> int:
-        return self.n
-
-    def __getitem__(self, index: Any) -> Any:
-        return self.points[index]
-
-    def __iter__(self) -> Iterator[Floats]:
-        return iter(self.points)
+    @property
+    def _rows(self) -> Floats:  # type: ignore[override]
+        return self.points
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> Array:
         points = self.points if dtype is None else below_one(self.points, dtype)

@@ -46,6 +46,27 @@ def pose_of_link(robot: Robot, q: ConfigurationLike, link: str = "") -> Pose:
     return Pose(tuple(matrix[:3, 3].tolist()), tuple(matrix[:3, :3].ravel().tolist()))
 
 
+def jacobian_of(robot: Robot, q: ConfigurationLike, link: str = "") -> Floats:
+    """Return what :meth:`Robot.jacobian` does."""
+    link = link or default_tip(robot)
+    require_known(f"link of {robot.name!r}:", link, robot.links)
+    poses = dict(zip(robot.links, link_poses(robot, as_configuration(robot, q)[np.newaxis])[0], strict=True))
+    carriers = {joint.child: joint for joint in robot.joints}
+    point, columns = poses[link][:3, 3], np.zeros((6, robot.dof))
+    while link in carriers:
+        joint = carriers[link]
+        link = joint.parent
+        # What follows a joint moves with it, as many times as fast.
+        leader, times = (joint.name, 1.0) if joint.mimic is None else (joint.mimic.joint, joint.mimic.multiplier)
+        if joint.kind == "fixed" or leader not in robot.group:
+            continue
+        frame = poses[joint.parent] @ joint.origin.matrix
+        axis = times * (frame[:3, :3] @ np.array(joint.axis))
+        shift, turn = (axis, 0.0 * axis) if joint.kind == "prismatic" else (np.cross(axis, point - frame[:3, 3]), axis)
+        columns[:, robot.group.index(leader)] += np.concatenate([shift, turn])
+    return columns
+
+
 def configurations_at(
     robot: Robot,
     pose: Pose | PoseGoal | npt.ArrayLike,

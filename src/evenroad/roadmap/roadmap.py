@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._call import explains_calls
 from evenroad._npz import Path
 from evenroad._shared import state_without
 from evenroad.errors import InvalidValue
@@ -36,6 +37,7 @@ class EdgeWeights(NamedTuple):
     weights: Ints
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class Roadmap:
     """Milestones and edges for any world of one space, made by ``er.build_roadmap``; it never changes.

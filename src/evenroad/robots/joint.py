@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
+from evenroad._call import explains_calls
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.space.joints import SLACK
@@ -26,6 +27,7 @@ class Mimic:
     offset: float = 0.0
 
 
+@explains_calls
 @dataclass(frozen=True, repr=False)
 class Joint:
     """How a link, the `child`, moves on its `parent`, as URDF has it.

@@ -13,20 +13,16 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
-from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
+from evenroad._hints import KnowsElsewhere
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
-from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, Piece, piece_of
-from evenroad.geometry.inner import inner_of
-from evenroad.geometry.parts import Parts, kinds_in_words, parts_of
+from evenroad.geometry.parts import Parts, kinds_in_words
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
 from evenroad.robots.held import HeldObject, held_parts, inner_of_both
 from evenroad.robots.joint import Joint
-from evenroad.robots.kinematics import held_values
-from evenroad.robots.pairs import self_pairs
 from evenroad.robots.planes import Plane
 
 if TYPE_CHECKING:
@@ -42,7 +38,7 @@ Padding = float | Mapping[str, float] | str | os.PathLike[str]
 
 @explains_calls
 @dataclass(frozen=True, repr=False)
-class Robot:
+class Robot(metaclass=KnowsElsewhere):
     """A kinematic tree with bodies; :func:`evenroad.load_robot` makes one of its file.
 
     Parameters
@@ -120,6 +116,12 @@ class Robot:
         joints = {joint.name: joint for joint in self.joints}
         return np.array([(joints[name].lower, joints[name].upper) for name in self.group]).reshape(-1, 2)
 
+    @property
+    def velocity_limits(self) -> Floats:
+        """Largest velocity of each joint of the group, (dof,) [rad/s or m/s]; infinite if the file has none."""
+        velocities = {joint.name: joint.velocity for joint in self.joints}
+        return np.array([velocities[name] for name in self.group])
+
     def configuration(self, q: ConfigurationLike, scene: Scene | None = None) -> Floats:
         """Return a configuration as numbers, from numbers, a mapping or a text.
 
@@ -186,6 +188,29 @@ class Robot:
         from evenroad.poses.robot_queries import pose_of_link
 
         return pose_of_link(self, q, link)
+
+    def jacobian(self, q: ConfigurationLike, link: str = "") -> Floats:
+        """Return how the pose of a link changes with the joints: the geometric Jacobian in the root link's frame.
+
+        Parameters
+        ----------
+        q, link : configuration, str
+            As for :meth:`fk`.
+
+        Returns
+        -------
+        ndarray, shape (6, dof)
+            Velocity of the link's origin (three rows), then angular velocity, for each joint's velocity of 1.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.load_robot("ur5").jacobian("home", "tool0").shape
+        (6, 6)
+        """
+        from evenroad.poses.robot_queries import jacobian_of
+
+        return jacobian_of(self, q, link)
 
     def ik(self, pose: Pose | PoseGoal, link: str = "", *, start: ConfigurationLike = ()) -> Floats:
         """Return the configurations that bring a link to a pose: inverse kinematics.
@@ -343,48 +368,10 @@ class Robot:
         >>> robot.with_tool(er.Cylinder(0.03, 0.1, xyz=(0, 0, 0.05)), "tool0").links[-1]
         'tool'
         """
-        require_known(f"link of {self.name!r}:", at, self.links)
-        tool = (tool,) if isinstance(tool, Shape) else tool
-        if not isinstance(tool, Robot):
-            if not isinstance(tool, list | tuple) or not all(isinstance(each, Shape) for each in tool):
-                raise InvalidValue(f"tool must be a Robot, as of load_robot, or shapes, got {shown(tool)}")
-            shapes = [replace(shape, link="tool") for shape in tool]
-            capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))
-            hulls = tuple(piece_of(shape).hull for shape in shapes)
-            more = dict(hulls=hulls, inner=inner_of(shapes), shapes=parts_of(shapes) if self.shapes else ())
-            tool = Robot("tool", ("tool",), (), capsules, (), (), **more)  # type: ignore[arg-type]
-        if not tool.capsules:
-            raise InvalidValue(f"tool {tool.name!r} must have a body: without one it would never collide")
-        tool = replace(tool, group=(), states={})
-        tool = _renamed(replace(tool, held=held_values(tool)), prefix)
-        mount = Joint(f"{at}-{tool.links[0]}", "fixed", at, tool.links[0], pose.xyz, pose.rotation)
-        joints = [joint.name for joint in self.joints], [mount.name, *(joint.name for joint in tool.joints)]
-        for what, ours, theirs in (("link", self.links, tool.links), ("joint", *joints)):
-            shared = sorted(set(ours) & set(theirs))
-            if shared:
-                raise InvalidValue(
-                    f"robot {self.name!r} and its tool must differ in the names of their {what}s, both have"
-                    f" {', '.join(shared)}; prefix='tool_' renames those of the tool"
-                )
-        joined = replace(
-            self,
-            name=f"{self.name} with {tool.name}",
-            links=(*self.links, *tool.links),
-            joints=(*self.joints, mount, *tool.joints),
-            capsules=(*self.capsules, *tool.capsules),
-            held={**self.held, **tool.held},
-            hulls=(*self.hulls, *tool.hulls),
-            resting=(*self.resting, *tool.resting),
-            inner=inner_of_both(self.inner, self.capsules, tool.inner, tool.capsules),
-            shapes=(*self.shapes, *tool.shapes) if self.shapes else (),
-            padding=(*self.padding, *tool.padding),
-        )
-        between = tuple(
-            pair
-            for pair in self_pairs(joined, pieces_of(joined)).tested
-            if (pair[0] in tool.links) != (pair[1] in tool.links)
-        )
-        return replace(joined, pairs=(*self.pairs, *tool.pairs, *between))
+        # Imported late: it makes robots of this class.
+        from evenroad.robots.tool import with_tool
+
+        return with_tool(self, tool, at, pose, prefix)
 
     def holding(
         self, shape: Shape | HeldObject, link: str = "", *, touches: Sequence[str] = (), name: str = "held"
@@ -467,28 +454,6 @@ def pieces_of(robot: Robot) -> dict[str, list[Piece]]:
         if capsule.link not in own:
             pieces.setdefault(capsule.link, []).append(piece_of(capsule))
     return pieces
-
-
-def _renamed(robot: Robot, prefix: str) -> Robot:
-    """Return a robot with `prefix` before the names of all links and joints."""
-    joints = []
-    for joint in robot.joints:
-        mimic = joint.mimic and replace(joint.mimic, joint=prefix + joint.mimic.joint)
-        name, parent, child = (prefix + each for each in (joint.name, joint.parent, joint.child))
-        joints.append(replace(joint, name=name, parent=parent, child=child, mimic=mimic))
-    return replace(
-        robot,
-        links=tuple(prefix + link for link in robot.links),
-        joints=tuple(joints),
-        capsules=tuple(replace(capsule, link=prefix + capsule.link) for capsule in robot.capsules),
-        pairs=tuple((prefix + first, prefix + second) for first, second in robot.pairs),
-        held={prefix + name: value for name, value in robot.held.items()},
-        hulls=tuple(replace(hull, link=prefix + hull.link) for hull in robot.hulls),
-        resting=tuple((prefix + first, prefix + second) for first, second in robot.resting),
-        inner=robot.inner and tuple(replace(each, link=prefix + each.link) for each in robot.inner),
-        shapes=tuple(replace(each, link=prefix + each.link) for each in robot.shapes),
-        padding=tuple((prefix + link, metres) for link, metres in robot.padding),
-    )
 
 
 def require_robot(robot: object) -> Robot:

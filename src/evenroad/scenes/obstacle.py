@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import FARTHEST, as_batch, require_positive
 from evenroad._native import robot as native
 from evenroad.errors import InvalidValue, shown
@@ -63,6 +64,7 @@ class Cut:
         require_positive("by how much a cut grows", self.grow, or_zero=True)
 
 
+@explains_calls
 @dataclass(frozen=True, repr=False)
 class Obstacle:
     """A body that does not move, by a name that is unique in its scene.

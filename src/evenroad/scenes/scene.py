@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
@@ -13,6 +14,7 @@ from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls, require_options
 from evenroad._checks import counted, require_known
 from evenroad._fingerprint import fingerprint_of
+from evenroad._hints import KnowsElsewhere
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Box
@@ -29,7 +31,7 @@ from evenroad.scenes.robot_setup import NO_SETUP, RobotSetup, Said
 
 @explains_calls
 @dataclass(frozen=True, init=False, repr=False)
-class Scene(Changes):
+class Scene(Changes, metaclass=KnowsElsewhere):
     """Obstacles, no two of one name; allowed contacts and named configurations.
 
     Parameters
@@ -291,6 +293,37 @@ class Scene(Changes):
         self._require_known(clearance)
         changed = (replace(each, clearance=clearance.get(each.name, each.clearance)) for each in self.obstacles)
         return replace(self, obstacles=Obstacles(changed))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the scene as a file that :func:`evenroad.load_scene` reads; meshes and clouds are files beside it.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A ``.yaml``.
+
+        Raises
+        ------
+        UnknownName
+            For another suffix.
+        NotAvailable
+            If objects are in the frames of links, as in scenes of MoveIt without a robot.
+        BrokenFile
+            If a file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import evenroad as er
+        >>> scene = er.Scene([er.Box((0.8, 1.2, 0.04), xyz=(0.5, 0, -0.02), name="table")])
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     scene.save(f"{folder}/cell.yaml")
+        ...     er.load_scene(f"{folder}/cell.yaml").fingerprint() == scene.fingerprint()
+        True
+        """
+        from evenroad.scenes.written import save_scene
+
+        save_scene(self, path)
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides results: obstacles and allowed contacts, in any order."""

@@ -10,6 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._call import explains_calls
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
 from evenroad.planning.result import PlanResult, Status
@@ -23,6 +24,7 @@ CURVE_DEVIATION = 5e-5
 """Default of a trajectory's largest distance from its path along a curve [rad or m], to keep the tip near the curve."""
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class TaskResult:
     """The answer to a task.

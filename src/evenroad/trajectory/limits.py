@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._call import explains_calls
 from evenroad._checks import as_row, require_known, require_positive
 from evenroad._native import trajectory as kernel
 from evenroad._shared import once_property, state_without
@@ -69,6 +70,7 @@ class TipLimits:
         return state_without(self, ["native"])
 
 
+@explains_calls
 @dataclass(frozen=True)
 class Limits:
     """Limits of each joint, in both directions.

@@ -12,19 +12,25 @@ import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
 from evenroad._arrays import Floats
-from evenroad._checks import counted, require_known
+from evenroad._call import explains_calls
+from evenroad._checks import counted, require_known, require_positive
+from evenroad._hints import KnowsElsewhere
+from evenroad._rows import Rows
 from evenroad.errors import InvalidValue, shown
 from evenroad.trajectory.limits import Limits
 
 ON_MAPS = "x", "y", "angle"
 """Names of what moves in place of joints on a map; a disk has the first two."""
+MOST_SAMPLES = 1_000_000
+"""Largest number of rows that a trajectory is sampled at."""
 STEP = 0.008
 """Time between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
 
 
+@explains_calls
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Trajectory:
-    """States of a robot at equal steps of time, from rest to rest.
+class Trajectory(Rows, metaclass=KnowsElsewhere):
+    """States of a robot at equal steps of time, from rest to rest; to NumPy the rows of its positions.
 
     Attributes
     ----------
@@ -120,6 +126,43 @@ class Trajectory:
         if len(self.times) == 1:
             return np.broadcast_to(self.positions[0], (*times.shape, len(self.names))).copy()
         return np.asarray(CubicHermiteSpline(self.times, self.positions, self.velocities)(times))
+
+    __call__ = at
+
+    def sample(self, dt: float) -> Floats:
+        """Return positions at times 0, dt, 2 dt, ... and at the end.
+
+        Parameters
+        ----------
+        dt : float
+            Time between two rows, > 0 [s].
+
+        Returns
+        -------
+        ndarray, shape (n, dim)
+            [rad or m].
+
+        Raises
+        ------
+        InvalidValue
+            If `dt` is not a finite number > 0, or so small that there would be more than a million rows.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0).sample(0.5).shape
+        (13, 2)
+        """
+        count = self.duration / require_positive("dt", dt)
+        if count > MOST_SAMPLES:
+            raise InvalidValue(f"dt must be at least {self.duration / MOST_SAMPLES:.3g} s here, got {shown(dt)}")
+        return self.at(np.append(np.arange(np.ceil(count - 1e-9)) * dt, self.duration))
+
+    @property
+    def _rows(self) -> Floats:  # type: ignore[override]
+        return self.positions
 
     def columns(self, order: Sequence[str] | None = None) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
         """Return names, positions, velocities and accelerations of moving and held joints.

@@ -56,6 +56,29 @@ class OneOrMany:
         """
         raise NotImplementedError
 
+    def in_collision(self, q: Any) -> Any:
+        """Return which configurations are not free: the opposite of :meth:`valid`, so also those outside of limits.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, dim) or (dim,)
+            As for :meth:`valid`.
+
+        Returns
+        -------
+        bool ndarray, shape (n,), or bool
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(radius=2)
+        >>> world.in_collision((1, 1))
+        True
+        """
+        free = self.valid(q)
+        return ~free if isinstance(free, np.ndarray) else not free
+
     def motion_valid(self, a: Any, b: Any) -> Any:
         """Return which motions are free: shortest interpolations from each row of `a` to that of `b`.
 

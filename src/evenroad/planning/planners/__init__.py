@@ -7,9 +7,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from evenroad._hints import hint_of_module
+from evenroad.errors import UnknownName, shown
 from evenroad.planning.planners.prm import FMT, PRM
 from evenroad.planning.planners.trees import RRTConnect
 from evenroad.planning.problem import Planner
 
 PLANNERS: dict[str, Callable[[], Planner]] = {"rrtconnect": RRTConnect, "prm": PRM, "fmt": FMT}
 """Planners by name."""
+_OTHERWISE = {"rrtc": "rrtconnect", "birrt": "rrtconnect", "connect": "rrtconnect", "fmt*": "fmt", "fmtstar": "fmt"}
+"""Other names of planners -> theirs, both in small letters alone."""
+
+
+def planner_of(name: str) -> Callable[[], Planner] | None:
+    """Return what makes a planner of a name in any spelling, as ``RRT-Connect`` or ``rrt_connect``; None if unknown."""
+    plain = "".join(each for each in name.casefold() if each not in "-_ ").removesuffix("planner")
+    return PLANNERS.get(_OTHERWISE.get(plain, plain))
+
+
+def unknown_planner(name: str) -> UnknownName:
+    """Return the error of a name that is no planner's, with what comes nearest to that planner here."""
+    hint = hint_of_module(name.replace("*", "star").replace("-", "").replace(" ", ""), ())
+    known = f"known: {', '.join(sorted(PLANNERS))}"
+    return UnknownName(f"unknown planner {shown(name)}; {f'{hint}; {known}' if hint else known}")

@@ -8,7 +8,7 @@ from inspect import signature
 from typing import Protocol
 
 from evenroad._call import explains_calls
-from evenroad._checks import require_known
+from evenroad._hints import unknown_keyword
 from evenroad._rng import RngLike
 from evenroad.errors import UnknownName
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
@@ -72,7 +72,8 @@ def make_sampler(name: str, **options: object) -> NamedSampler:
         raise UnknownName.among("sampler", name, SAMPLERS)
     taken = {*signature(SAMPLERS[known]).parameters, "rng"}
     for option in options:
-        require_known(f"option of sampler {name!r}:", option, taken)
+        if option not in taken:
+            raise unknown_keyword(f"option of sampler {name!r}", option, taken)
     return SAMPLERS[known](**options)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
+from evenroad._hints import KnowsElsewhere
 from evenroad.errors import InvalidValue, shown
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 @explains_calls
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class GridMap:
+class GridMap(metaclass=KnowsElsewhere):
     """The occupied cells of a map, and its frame.
 
     Parameters
