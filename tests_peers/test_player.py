@@ -8,6 +8,8 @@ from evenroad.robots.kinematics import link_poses
 from evenroad.viz.player import save_page
 from tests_peers.chromium import opened
 
+BOX = [(-0.45, -0.31), (0.45, -0.31), (0.45, 0.31), (-0.45, 0.31)]
+
 
 @pytest.fixture(scope="module")
 def result():
@@ -49,3 +51,27 @@ def test_bodies_and_colours_are_shown_as_the_boxes_say(tab):
     assert coloured != before
     tab.uncheck("#show-capsules")
     assert tab.screenshot() != coloured
+
+
+@pytest.mark.parametrize(
+    ("moves", "size"), [({"footprint": BOX, "turning_radius": 0.6}, (1280, 800)), ({"radius": 0.25}, (390, 780))]
+)
+def test_a_robot_on_a_map_drives_in_the_browser(moves, size, tmp_path):
+    world = er.load_map("office.yaml").world(**moves)
+    result = er.plan(world, (1.0, 2.0, 1.57)[: world.space.dim], (8.5, 3.0, 0.0)[: world.space.dim])
+    made = result.trajectory(speed=1.0, acceleration=0.5)
+    save_page(tmp_path / "page.html", result, timed=(made.times, made.positions))
+    with opened((tmp_path / "page.html").as_uri(), *size) as tab:
+        tab.wait_for_function("document.getElementById('now').value.includes('clear')")
+        before = tab.screenshot()
+        tab.click("#play")
+        tab.wait_for_function("state.time > 0.5")
+        tab.click("#play")
+        assert tab.screenshot() != before
+        tab.click("summary")
+        there = tab.screenshot()
+        tab.uncheck("#show-swept-area")
+        assert tab.screenshot() != there
+        assert tab.evaluate("document.documentElement.scrollWidth") <= size[0]
+        assert tab.wrong == []
+        assert [each for each in tab.requests if not each.startswith(("file:", "data:"))] == []

@@ -1,5 +1,6 @@
 """``evenroad plan --footprint``: the record, the picture and the errors of a car's plan."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -116,3 +117,18 @@ def test_times_that_cannot_be_are_refused_before_planning(run, plan, words, says
     assert (code, len(err.strip().splitlines())) == (2, 1)
     assert says in err
     assert not Path("office.json").exists()
+
+
+@pytest.mark.usefixtures("in_an_empty_folder")
+@pytest.mark.parametrize("times", [(), ("--timed", "--curvature-rate", "2")])
+def test_the_plan_of_a_car_is_viewed_on_its_map_and_a_damaged_one_refused(run, times):
+    assert run(*CAR, *times)[0] == 0
+    code, out, err = run("view", "office.json", "--html", "page.html", "--png", "page.png")
+    assert (code, out, err) == (0, "wrote page.png\nwrote page.html\n", "")
+    assert '"kind":"map"' in Path("page.html").read_text()
+    record = json.loads(Path("office.json").read_text())
+    del record["sha256"], record["query"]["turning_radius"]
+    Path("office.json").write_text(json.dumps(record))
+    code, _, err = run("view", "office.json", "--html", "page.html")
+    assert (code, len(err.strip().splitlines())) == (2, 1)
+    assert "footprint" in err

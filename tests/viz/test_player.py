@@ -14,6 +14,7 @@ from evenroad.robots.kinematics import joint_values
 from evenroad.space.path import configuration_at
 from evenroad.viz.bodies import robot_parts
 from evenroad.viz.player import page_of, save_page
+from evenroad.world import MapFrame
 
 
 @pytest.fixture(scope="module")
@@ -72,3 +73,31 @@ def test_the_page_says_at_each_state_what_a_path_that_stays_there_keeps(reach):
         state = configuration_at(reach.path, reach.world.space, np.linspace(0.0, 1.0, len(data["clearance"])))[row]
         kept = reach.world.path_clearance(np.stack([state, state]))
         assert data["clearance"][row] == pytest.approx(kept, abs=2e-4)
+
+
+@pytest.mark.parametrize("y_up", [True, False])
+def test_a_page_of_a_car_puts_its_footprint_where_the_car_is(y_up):
+    frame = MapFrame(rows=60, cols=80, resolution=0.1, y_up=y_up, origin=(1.0, -2.0), yaw=0.3 if y_up else 0.0)
+    grid = er.GridMap(np.zeros((60, 80), dtype=bool), frame)
+    car = grid.world(footprint=[(-0.5, -0.3), (0.7, -0.3), (0.4, 0.3), (-0.5, 0.3)], turning_radius=0.5)
+    start, goal = car.space.from_cube(np.array([[0.3, 0.3, 0.1], [0.7, 0.6, 0.7]]))
+    result = er.plan(car, start, goal)
+    made = result.trajectory(speed=1.0, step=0.05)
+    data = _data(page_of(result, timed=(made.times, made.positions)))
+    assert len(data["states"]) == len(data["times"]) == len(data["clearance"])
+    for (x, y, angle), pose in zip(data["states"], made.positions, strict=True):
+        (placed,) = car.footprint.placed(pose, car.footprint.outlines)
+        (outline,) = np.array(data["outlines"])
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        np.testing.assert_allclose(outline @ turn + [x, y], frame.to_pixels(placed), atol=2e-3)
+    assert np.abs(np.diff(np.array(data["states"])[:, 2])).max() < 0.5
+    np.testing.assert_allclose(data["clearance"], car.distance(made.positions), atol=1e-4)
+
+
+def test_a_page_without_times_follows_the_curves_of_a_car(reach):
+    grid = er.GridMap(np.zeros((60, 60), dtype=bool), resolution=0.1)
+    car = grid.world(footprint=[(-0.5, -0.3), (0.5, -0.3), (0.5, 0.3), (-0.5, 0.3)], turning_radius=0.5)
+    result = er.plan(car, (2, 2, 0), (4, 4, 2))
+    states = np.array(_data(page_of(result))["states"])
+    on_path = grid.frame.to_pixels(result.path[:, :2])
+    assert max(np.linalg.norm(on_path - state[:2], axis=1).min() for state in states) < 1.0

@@ -1,4 +1,4 @@
-"""A plan as one HTML file that plays offline: an arm in three dimensions, or a disk on its map."""
+"""A plan as one HTML file that plays offline: an arm in three dimensions, or a disk or a car on its map."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from evenroad._arrays import Floats
 from evenroad._checks import as_file, require_known
 from evenroad._files import atomic_write
 from evenroad.collision.arm_world import ArmWorld
+from evenroad.driving.car_world import CarWorld
 from evenroad.errors import NotAvailable
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.loading.robot_file import RobotFile
@@ -57,7 +58,7 @@ def save_page(
     path : str or path-like
         An ``.html``.
     result : PlanResult
-        A plan that knows its world: an arm in its scene, or a disk on a map.
+        A plan that knows its world: an arm in its scene, or a disk or a car on a map.
     file : RobotFile, optional
         The robot's file, whose visual and collision geometry can then be shown; capsules always can.
     timed : tuple of ndarray, optional
@@ -69,7 +70,7 @@ def save_page(
     UnknownName
         For another suffix.
     NotAvailable
-        If the world is neither of the two, or there is no path.
+        If the world is another one, or there is no path.
     """
     out = as_file("what a page is saved to", path)
     require_known(f"kind of page, {os.fspath(path)!r}: suffix", out.suffix.lower(), (".html",))
@@ -81,8 +82,8 @@ def save_page(
 def page_of(result: PlanResult, *, file: RobotFile | None = None, timed: Timed | None = None) -> str:
     """Return the text of the page that :func:`save_page` writes."""
     world = result.world
-    if not isinstance(world, ArmWorld | DiskWorld):
-        raise NotAvailable("plans of arms and of disks on maps can be shown; this one has another world, or none")
+    if not isinstance(world, ArmWorld | DiskWorld | CarWorld):
+        raise NotAvailable("plans of arms and on maps can be shown; this one has another world, or none")
     if result.path is None:
         raise NotAvailable(f"there is no path to play: {result.message}")
     kept = kept_distance(result) if isinstance(world, ArmWorld) else ""
@@ -102,7 +103,7 @@ def filled(data: Data) -> str:
     return TEMPLATE.read_text(encoding="utf-8").replace("__DATA__", text)
 
 
-def states_of(result: PlanResult, world: ArmWorld | DiskWorld, timed: Timed | None) -> Timed:
+def states_of(result: PlanResult, world: ArmWorld | DiskWorld | CarWorld, timed: Timed | None) -> Timed:
     """Return times, (n,) [s], and configurations at them, (n, dim); without a path the arm stays at the start."""
     if timed is not None:
         chosen = np.unique(np.linspace(0, len(timed[0]) - 1, _MOST).astype(int))
@@ -117,6 +118,8 @@ def clearances(world: World, states: Floats) -> list[float] | None:
     """Return a lower bound of the distance from obstacles at each of some states, (n, dim), None if not known [m]."""
     if isinstance(world, ArmWorld):
         return rounded(world.obstacle_distances(states), 4) if world.valid(states).all() else None
+    if isinstance(world, CarWorld):
+        return rounded(world.distance(states), 4)
     if not isinstance(world, MeasuresPaths):
         return None
     bounds = [world.path_clearance(np.stack([state, state])) for state in states[:: len(states) // 120 + 1]]
@@ -194,20 +197,28 @@ def _body_data(part: Part, link: int, kind: str, name: str) -> Data:
     }
 
 
-def _map_data(world: DiskWorld, states: Floats) -> Data:
+def _map_data(world: DiskWorld | CarWorld, states: Floats) -> Data:
     frame, picture = world.grid.frame, BytesIO()
     plot_map(world.grid).save(picture, format="png")
-    return {
+    pixels = frame.to_pixels(states[:, :2])
+    data: Data = {
         "kind": "map",
         "unit": "m" if frame.y_up else "px",
-        "name": "a disk on its map",
+        "name": "a disk on its map" if isinstance(world, DiskWorld) else "a car on its map",
         "picture": "data:image/png;base64," + base64.b64encode(picture.getvalue()).decode(),
         "size": [frame.cols, frame.rows],
-        "radius": world.radius / frame.resolution,
-        "states": [rounded(row, 3) for row in frame.to_pixels(states)],
         "joints": [],
         "sets": [],
     }
+    if isinstance(world, DiskWorld):
+        return data | {"radius": world.radius / frame.resolution, "states": [rounded(row, 3) for row in pixels]}
+    ahead = np.column_stack([np.cos(states[:, 2]), np.sin(states[:, 2])])
+    right, down = (frame.to_pixels(states[:, :2] + ahead) - pixels).T
+    turned = np.column_stack([pixels, np.unwrap(np.arctan2(down, right))])
+    # Rows of the picture run down: what is to the left on a map with y up is at a smaller y.
+    scale = np.array([1.0, -1.0 if frame.y_up else 1.0]) / frame.resolution
+    outlines = [[rounded(corner, 4) for corner in outline * scale] for outline in world.footprint.outlines]
+    return data | {"outlines": outlines, "states": [rounded(row, 4) for row in turned]}
 
 
 def columns_of(pose: Pose) -> list[float]:
