@@ -4,15 +4,17 @@
     python -m studies.benchmarks.path_certificates ur5 panda --queries 1000      # robots by their names
 
 Each robot's file is tried in scenes with one kind of obstacle each: boxes, other primitives, a mesh, a cloud, a height
-map, a plane with an object in the hand, and boxes with clearance and padding.  Obstacles are drawn anew for each query,
-between two free configurations.  A row is one path that evenroad proved; `reason` says why it has no certificate, or
-why the checker refuses it.  Times are of processors: of the plan, of the writer, and of a check without reading files.
+map, boxes with clearance, boxes with an object in the hand, and boxes around a base that moves in the plane.  Obstacles
+are drawn anew for each query, between two free configurations.  A row is one path that evenroad proved; `reason` says
+why it has no certificate, or why a checker refuses it.  Times are of processors: of the plan, of the writer, of a check
+without reading files, and of the checker in C as a command, which reads all (`make checker` compiles it).
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import resource
 import subprocess
 import sys
 import tempfile
@@ -31,7 +33,8 @@ import evenroad as er
 from evenroad.certificates.certify import Sources, certify
 from evenroad.errors import EvenroadError
 from evenroad.geometry.mesh import convex_hull, height_map
-from evenroad.loading.load import load_model
+from evenroad.loading.load import RobotOptions, load_model
+from evenroad.loading.model import RobotModel
 from evenroad.robots.kinematics import capsule_endpoints
 from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import read_inputs
@@ -47,12 +50,19 @@ COLUMNS = (
     "plan_ms",
     "write_ms",
     "check_ms",
+    "c_ms",
     "bytes",
     "answer",
     "reason",
 )
 SECONDS = 2.0
 TRIES = 10
+IN_C = Path("out/evenroad-verify")
+BASE = "sweep"
+BASE_SRDF = """<robot name="{name}">
+  <virtual_joint name="{base}" type="planar" parent_frame="floor" child_link="{root}"/>
+  <group name="all">{joints}</group>
+</robot>"""
 
 
 @dataclass(frozen=True)
@@ -107,33 +117,72 @@ KINDS: dict[str, Callable[[Around], list[er.Shape]]] = {
     "cloud": cloud,
     "ground": ground,
     "clearance": boxes,
+    "held": boxes,
+    "base": boxes,
 }
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A robot as its file is read, with an SRDF or none."""
+
+    model: RobotModel
+    sources: Sources
+
+    @classmethod
+    def read(cls, path: Path | str, srdf: Path | None = None, group: str | None = None) -> Tried:
+        options: RobotOptions = {"srdf": srdf, "group": group}
+        try:
+            model = load_model(path, **options)
+        except EvenroadError as error:
+            if "--use-visuals" not in str(error):
+                raise
+            options["use_visuals"] = True
+            model = load_model(path, **options)
+        visuals = options.get("use_visuals", False)
+        return cls(model, Sources.named(path, None, srdf, embed=True, use_visuals=visuals))
+
+    def on_a_base(self, folder: Path) -> Tried:
+        """Return the same robot on a base that moves in the plane."""
+        robot = self.model.robot
+        joints = "".join(f'<joint name="{name}"/>' for name in (BASE, *robot.group))
+        srdf = folder / "base.srdf"
+        srdf.write_text(BASE_SRDF.format(name=robot.name, base=BASE, root=robot.links[0], joints=joints))
+        return self.read(self.sources.robot, srdf, "all")
 
 
 def rows_of(path: Path | str, queries: int, seed: int) -> Iterator[dict[str, Any]]:
     """Yield a row for each path of a robot that is planned."""
-    model = load_model(path)
+    tried = Tried.read(path)
     rng = np.random.default_rng(seed)
-    empty = er.ArmWorld(model.robot)
+    empty = er.ArmWorld(tried.model.robot)
     q = empty.space.from_cube(rng.random((200, empty.space.cube_dim)))
-    endpoints = capsule_endpoints(model.robot, q).reshape(-1, 3)
+    endpoints = capsule_endpoints(tried.model.robot, q).reshape(-1, 3)
     low, high = np.quantile(endpoints, [0.02, 0.98], axis=0)
     with tempfile.TemporaryDirectory() as folder:
+        moving: Tried | None = None
         for query in range(queries):
             kind = list(KINDS)[query % len(KINDS)]
             around = Around(np.random.default_rng([seed, query]), low, high + 0.05)
             row = {"kind": kind, "query": query, "joints": empty.space.dim}
             try:
-                yield row | _tried(path, model.robot, kind, around, Path(folder))
+                if kind == "base":
+                    moving = moving or tried.on_a_base(Path(folder))
+                yield row | _tried(moving if moving and kind == "base" else tried, kind, around, Path(folder))
             except EvenroadError as error:
                 yield row | {"answer": "none", "reason": str(error)[:200]}
 
 
-def _tried(path: Path | str, robot: er.Robot, kind: str, around: Around, folder: Path) -> dict[str, Any]:
+def _tried(tried: Tried, kind: str, around: Around, folder: Path) -> dict[str, Any]:
     """Return what becomes of one query."""
-    clearance = 0.01 if kind == "clearance" else 0.0
+    clearance, robot = 0.01 if kind == "clearance" else 0.0, tried.model.robot
+    if kind == "held":
+        body = er.Box([around.size(0.1) for _ in range(3)], xyz=0.05 * around.rng.normal(size=3))
+        robot = robot.holding(er.robot.HeldObject("held", body, robot.links[-1], robot.links[len(robot.links) // 2 :]))
+    limits = {f"{BASE}/{each}": (-0.5, 0.5) for each in "xy"} if kind == "base" else {}
     for _ in range(TRIES):
-        world = er.ArmWorld(robot, er.Scene(KINDS[kind](around)), clearance=clearance)
+        scene = er.Scene(KINDS[kind](around), limits=limits)
+        world = er.ArmWorld(er.robot.in_scene(robot, scene), scene, clearance=clearance)
         q = world.space.from_cube(around.rng.random((60, world.space.cube_dim)))
         free = q[world.valid(q)]
         if len(free) > 1:
@@ -147,19 +196,34 @@ def _tried(path: Path | str, robot: er.Robot, kind: str, around: Around, folder:
         return row | {"answer": "no path"}
     file, begin = folder / "path.cert", time.process_time()
     try:
-        certify(world, result.path, Sources.named(path, None, embed=True), file)
+        certify(world, result.path, tried.sources, file)
     except EvenroadError as error:
         return row | {"answer": "not written", "reason": str(error)[:200]}
+    row["write_ms"] = _ms(begin)
+    return row | _checked(file)
+
+
+def _checked(file: Path) -> dict[str, Any]:
+    """Return what both checkers say of a certificate."""
     data = file.read_bytes()
     read = read_certificate(data)
-    row |= {"write_ms": _ms(begin), "bytes": len(data) - sum(8 + len(each) for each in read.carried)}
+    row: dict[str, Any] = {"bytes": len(data) - sum(8 + len(each) for each in read.carried)}
     try:
         inputs = read_inputs(None, None, None, {}, read)
         begin = time.process_time()
         verify(data, inputs)
     except (Refused, BadInput) as error:
         return row | {"answer": "refused", "reason": str(error)[:200]}
-    return row | {"check_ms": _ms(begin), "answer": "accepted"}
+    row["check_ms"] = _ms(begin)
+    if IN_C.is_file():
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = subprocess.run([IN_C, file], capture_output=True, text=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        row["c_ms"] = round(1e3 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime), 3)
+        if done.returncode:
+            said = (done.stdout + done.stderr).strip()
+            return row | {"answer": "refused in C", "reason": said[:200]}
+    return row | {"answer": "accepted"}
 
 
 def _ms(begin: float) -> float:
@@ -168,7 +232,7 @@ def _ms(begin: float) -> float:
 
 def summary(rows: list[dict[str, Any]]) -> str:
     """Return what rows say together."""
-    written = [row for row in rows if row["answer"] in ("accepted", "refused")]
+    written = [row for row in rows if row["answer"] in ("accepted", "refused", "refused in C")]
     accepted = [row for row in written if row["answer"] == "accepted"]
     if not accepted:
         return f"{len(rows)} queries, {len(written)} written, none accepted"
@@ -177,12 +241,13 @@ def summary(rows: list[dict[str, Any]]) -> str:
         return np.array([float(row[name]) for row in accepted])
 
     check, plan, write, size = of("check_ms"), of("plan_ms"), of("write_ms"), of("bytes")
+    in_c = np.array([float(row["c_ms"] or "nan") for row in accepted])
     failed = sum(row["answer"] == "not written" for row in rows)
     return (
         f"{len(written)} written, {failed} not; {100.0 * len(accepted) / len(written):.2f} % accepted; bytes: median"
         f" {np.median(size):.0f}, most {size.max():.0f}; check: median {np.median(check):.1f} ms, most"
-        f" {check.max():.0f}; by planning: median {np.median(check / plan):.1f}; writer by planning: median"
-        f" {np.median(write / plan):.1f}"
+        f" {check.max():.0f}; by planning: median {np.median(check / plan):.1f}; in C: median {np.median(in_c):.1f} ms;"
+        f" writer: first {write[0]:.1f} ms, median {np.median(write):.1f}, by planning {np.median(write / plan):.1f}"
     )
 
 

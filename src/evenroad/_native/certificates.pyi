@@ -1,10 +1,20 @@
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints
 
-class ShapeTables:
-    def __init__(self, points: Floats, corners: Ints, sizes: Floats, numbers: Ints) -> None: ...
+class Elements:
+    def __init__(
+        self, points: Floats, corners: Ints, radius: float, disc: float, axis: Floats, is_box: bool
+    ) -> None: ...
+
+class Node:
+    def __init__(self, frame: int, shapes: Sequence[Elements]) -> None: ...
+
+class Pair:
+    def __init__(self, first: Node, second: Node, keep: float) -> None: ...
 
 class JointTables:
     def __init__(self, links: Ints, poses: Floats, rules: Floats) -> None: ...
@@ -24,13 +34,4 @@ class Answers:
     directions: npt.NDArray[np.float32]
     touch: Touch
 
-def write_answers(
-    shape_tables: ShapeTables,
-    joint_tables: JointTables,
-    nodes: Ints,
-    shapes: Ints,
-    pairs: Ints,
-    keeps: Floats,
-    paths: Paths,
-    most: int,
-) -> Answers | None: ...
+def write_answers(joint_tables: JointTables, pairs: Sequence[Pair], paths: Paths, most: int) -> Answers | None: ...

@@ -14,20 +14,19 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
-from evenroad._native.certificates import Answers
-from evenroad.certificates.claim import Claim, Claimed, claim_of
+from evenroad._native.certificates import Answers, Paths, write_answers
+from evenroad.certificates.claim import Claim, Claimed, Links, claim_of
 from evenroad.certificates.curves import TOLERANCES, Curves, driven, straight
-from evenroad.certificates.elements import tables_of
 from evenroad.certificates.kept import claimed_keeps, rows_of
 from evenroad.certificates.plain import claimed_scene
-from evenroad.certificates.sources import Files, robot_files, scene_files
+from evenroad.certificates.robot_files import read_robot_files
+from evenroad.certificates.sources import Files, scene_files
 from evenroad.certificates.sources import Sources as Sources
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.constrained_world import KeptWorld
 from evenroad.constraints.differential_drive import DrivenWorld
 from evenroad.constraints.keep import Keep
 from evenroad.errors import Exhausted, InvalidValue, shown
-from evenroad.loading.description import RobotDescription
 from evenroad.robots.kinematics import held_values
 from evenroad.scenes.scene import Scene
 from evenroad.space.path import continued
@@ -53,7 +52,7 @@ def certify(world: object, path: Floats, sources: Sources, file: PathLike, *, st
     if not isinstance(world, ArmWorld):
         raise InvalidValue(f"a certificate is about a path of an arm in a scene, not in {shown(world)}")
     claimed = claimed_by(sources, world, keeps)
-    claim = claim_of(claimed.urdf, claimed.scene, claimed.beside)
+    claim = claim_of(claimed.links, claimed.scene, claimed.beside)
     if states is None:
         curves = straight(continued(path, world.space, path[0]))
         answers, directions = answers_of(claim, curves)
@@ -72,15 +71,15 @@ class OfFiles:
     """What a certificate is about: what files say, and what it says beside them."""
 
     files: tuple[Files, Files]
-    urdf: RobotDescription
+    links: Links
     scene: Scene
     beside: Claimed
 
     def write(self, file: Path, magic: str, more: list[str], tables: bytes) -> None:
         """Write a certificate: a header with some lines more, tables, and the files that it carries."""
         digest, beside = hashlib.sha256(), self.beside
-        for content in (each for files in self.files for each in files.contents):
-            digest.update(hashlib.sha256(content).digest())
+        for files in self.files:
+            digest.update(files.digests)
         lines = [f"inputs {digest.hexdigest()}", *(f"joint {name}" for name in beside.joints)]
         for name, files in zip(("robot", "scene"), self.files, strict=True):
             lines += [f"{name} {files.made_of}"] if files.carried else []
@@ -95,7 +94,8 @@ class OfFiles:
 
 def claimed_by(sources: Sources, world: ArmWorld, keeps: Sequence[Keep] = ()) -> OfFiles:
     """Return what a certificate of a world is about."""
-    robot, urdf = robot_files(sources, world)
+    read = read_robot_files(sources, world)
+    robot = read.files(world)
     claims = claimed_scene(world)
     scene = scene_files(sources, world, claims)
     claimed = Claimed(
@@ -107,7 +107,7 @@ def claimed_by(sources: Sources, world: ArmWorld, keeps: Sequence[Keep] = ()) ->
         padding=dict(world.robot.padding),
         keeps=claimed_keeps(keeps, world.robot),
     )
-    return OfFiles((robot, scene), urdf, claims, claimed)
+    return OfFiles((robot, scene), read.links(claimed), claims, claimed)
 
 
 def _near(claim: Claim, states: Floats) -> tuple[Curves, npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
@@ -131,7 +131,7 @@ def answers_of(claim: Claim, curves: Curves) -> tuple[npt.NDArray[np.uint8], npt
         where = f"no certificate: motion {touch.motion} at share {touch.share:.6f}"
         if touch.pair >= len(claim.pairs):
             raise InvalidValue(f"{where}: {claim.keeps[touch.pair - len(claim.pairs)].link} leaves its constraint")
-        first, second = claim.pairs[touch.pair][3]
+        first, second = claim.pairs[touch.pair].names
         what = "touches" if touch.gap < DECIDED else "is not shown to be apart from"
         raise InvalidValue(f"{where}: {first} {what} {second}")
     return written.answers, written.directions
@@ -139,24 +139,8 @@ def answers_of(claim: Claim, curves: Curves) -> tuple[npt.NDArray[np.uint8], npt
 
 def written_of(claim: Claim, curves: Curves, most: int) -> Answers | None:
     """Return what the kernel writes for curves, None if it takes more than `most` answers."""
-    # Imported late: nothing else needs it.
-    from evenroad._native import certificates as native
-
-    members = np.array([number for node in claim.nodes for number in node.shapes], dtype=np.int64)
-    stops = np.cumsum([len(node.shapes) for node in claim.nodes], dtype=np.int64)
-    rows = [(node.frame, end - len(node.shapes), end) for node, end in zip(claim.nodes, stops, strict=True)]
-    both = np.array([pair[:2] for pair in claim.pairs], dtype=np.int64).reshape(-1, 2)
-    frames, limits, numbers = rows_of(claim.keeps, claim.tree.placement)
-    return native.write_answers(
-        tables_of(claim.shapes),
-        claim.tree.tables(),
-        np.array(rows, dtype=np.int64).reshape(-1, 3),
-        members,
-        both,
-        np.array([keep for _, _, keep, _ in claim.pairs], dtype=float),
-        native.Paths(curves.controls, curves.tolerance, frames, limits, numbers),
-        most,
-    )
+    paths = Paths(curves.controls, curves.tolerance, *rows_of(claim.keeps, claim.tree.placement))
+    return write_answers(claim.tree.native, [pair.native for pair in claim.pairs], paths, most)
 
 
 def packed(answers: npt.NDArray[np.uint8]) -> bytes:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._native.certificates import JointTables
+from evenroad._native.certificates import JointTables, Node
+from evenroad._native.certificates import Pair as NativePair
+from evenroad._shared import once_property
 from evenroad.certificates.elements import Elements, elements_of
 from evenroad.certificates.kept import Axis, Point
 from evenroad.errors import InvalidValue
@@ -48,8 +50,9 @@ class Tree:
     placement: dict[str, tuple[int, Pose]]
     moved: tuple[tuple[int, Joint, Pose, int, float, float], ...]
 
-    def tables(self) -> JointTables:
-        """Return the joints as the kernel takes them."""
+    @once_property
+    def native(self) -> JointTables:
+        """The joints as the kernel takes them."""
         links = [(parent, column, joint.kind == "prismatic") for parent, joint, _, column, _, _ in self.moved]
         poses = [np.concatenate([at.matrix[:3, :3].ravel(), at.xyz, joint.axis]) for _, joint, at, *_ in self.moved]
         rules = [(factor, offset) for *_, factor, offset in self.moved]
@@ -72,21 +75,26 @@ class Tree:
 
 
 @dataclass(frozen=True)
-class Node:
-    """Some bodies of a frame; its shapes are numbers in the claim's."""
+class Pair:
+    """Two nodes, a distance that they are to keep [m], and the names of their bodies."""
 
-    frame: int
-    shapes: tuple[int, ...]
+    first: Node
+    second: Node
+    keep: float
+    names: tuple[str, str]
+
+    @once_property
+    def native(self) -> NativePair:
+        """The same for the kernel."""
+        return NativePair(self.first, self.second, self.keep)
 
 
 @dataclass(frozen=True)
 class Claim:
-    """All that is to be proved: pairs, each of two nodes, a distance to keep [m], and the names of its bodies."""
+    """All that is to be proved: pairs of nodes in the frames of a tree, and constraints."""
 
     tree: Tree
-    shapes: tuple[Elements, ...]
-    nodes: tuple[Node, ...]
-    pairs: tuple[tuple[int, int, float, tuple[str, str]], ...]
+    pairs: tuple[Pair, ...]
     keeps: tuple[Axis | Point, ...] = ()
 
 
@@ -112,68 +120,105 @@ def tree_of(urdf: RobotTree, claimed: Claimed) -> Tree:
     return Tree(placement, tuple(moved))
 
 
-def claim_of(urdf: RobotDescription, scene: Scene, claimed: Claimed) -> Claim:
+class Links:
+    """The links of a robot with shapes, as claims have them in any scene: each in a frame of its tree."""
+
+    def __init__(self, urdf: RobotDescription, tree: Tree) -> None:
+        self.urdf, self.tree = urdf, tree
+        self.bodies: dict[str, tuple[Elements, ...]] = {}
+        for link in urdf.links:
+            shapes = [each for each in urdf.shapes if each.link == link]
+            if shapes:
+                at = tree.placement[link][1]
+                self.bodies[link] = tuple(elements_of(each, at) for each in shapes)
+        self._nodes: dict[tuple[str, ...], Node] = {}
+        self._pairs: dict[frozenset[frozenset[str]], tuple[Pair, ...]] = {}
+
+    def node(self, names: tuple[str, ...]) -> Node:
+        """Return the node of some links of one frame, the same each time."""
+        if names not in self._nodes:
+            elements = [each.native for name in names for each in self.bodies[name]]
+            self._nodes.setdefault(names, Node(self.tree.placement[names[0]][0], elements))
+        return self._nodes[names]
+
+    def pairs(self, untested: frozenset[frozenset[str]]) -> tuple[Pair, ...]:
+        """Return the pairs of links in different frames, but those that are untested."""
+        if untested not in self._pairs:
+            places = {name: self.tree.placement[name][0] for name in self.bodies}
+            self._pairs[untested] = tuple(_among(places, lambda name: self.node((name,)), untested))
+        return self._pairs[untested]
+
+
+def claim_of(links: Links, scene: Scene, claimed: Claimed) -> Claim:
     """Return what is to be proved of a robot in a scene; NotAvailable for bodies that no certificate speaks of."""
-    tree = tree_of(urdf, claimed)
-    placement = dict(tree.placement)
-    shapes: list[Elements] = []
-    bodies: dict[str, list[int]] = {}
-    for link in urdf.links:
-        for body in (each for each in urdf.shapes if each.link == link):
-            bodies.setdefault(link, []).append(len(shapes))
-            shapes.append(elements_of(body, placement[link][1]))
-    for held in scene.attached:
-        placement[held.name] = placement[held.link]
-        bodies[held.name] = [len(shapes)]
-        shapes.append(elements_of(held.body, placement[held.link][1], convex=held.name in claimed.convex))
-    obstacles = {}
-    for each in scene.obstacles:
-        obstacles[each.name] = len(shapes)
-        shapes.append(elements_of(each.body, IDENTITY, convex=each.name in claimed.convex, wider=each.clearance))
-    nodes: list[Node] = []
-    pairs = [*_around(bodies, placement, obstacles, scene, claimed, nodes)]
-    first = len(nodes)
-    nodes += [Node(placement[name][0], tuple(numbers)) for name, numbers in bodies.items()]
-    touching, names = touching_of(urdf, scene, bodies, claimed), list(bodies)
+    held: dict[str, Elements] = {}
+    places = {name: links.tree.placement[name][0] for name in links.bodies}
+    for each in scene.attached:
+        places[each.name], at = links.tree.placement[each.link]
+        held[each.name] = elements_of(each.body, at, convex=each.name in claimed.convex)
+    nodes = {name: Node(places[name], [elements.native]) for name, elements in held.items()}
+
+    def node(names: tuple[str, ...]) -> Node:
+        if not held.keys() & names:
+            return links.node(names)
+        elements = [each for name in names for each in links.bodies.get(name, ()) or (held[name],)]
+        return Node(places[names[0]], [each.native for each in elements])
+
+    around = _around(node, places, scene, claimed)
+    untested = touching_of(links.urdf, scene, links.bodies, claimed)
+    if not held:
+        return Claim(links.tree, (*around, *links.pairs(untested)), claimed.keeps)
+    among = _among(places, lambda name: nodes.get(name) or links.node((name,)), untested)
+    return Claim(links.tree, (*around, *among), claimed.keeps)
+
+
+def _among(
+    places: Mapping[str, int], node: Callable[[str], Node], untested: frozenset[frozenset[str]]
+) -> Iterator[Pair]:
+    """Yield the pairs of bodies in different frames, but those that are untested; `places` are their frames."""
+    names = list(places)
     for i, name in enumerate(names):
-        for j in range(i + 1, len(names)):
-            if placement[name][0] != placement[names[j]][0] and frozenset((name, names[j])) not in touching:
-                pairs.append((first + i, first + j, 0.0, (name, names[j])))
-    return Claim(tree, tuple(shapes), tuple(nodes), tuple(pairs), claimed.keeps)
+        for other in names[i + 1 :]:
+            if places[name] != places[other] and frozenset((name, other)) not in untested:
+                yield Pair(node(name), node(other), 0.0, (name, other))
 
 
 def _around(
-    bodies: Mapping[str, list[int]],
-    placement: Mapping[str, tuple[int, Pose]],
-    obstacles: Mapping[str, int],
-    scene: Scene,
-    claimed: Claimed,
-    nodes: list[Node],
-) -> Iterable[tuple[int, int, float, tuple[str, str]]]:
+    node: Callable[[tuple[str, ...]], Node], places: Mapping[str, int], scene: Scene, claimed: Claimed
+) -> Iterator[Pair]:
     """Yield pairs of bodies and obstacles: bodies of one frame with the same allowances are one node."""
+    allowed: dict[str, list[str]] = {}
+    for body, obstacle in scene.allowed:
+        allowed.setdefault(body, []).append(obstacle)
     groups: dict[tuple[int, frozenset[str], float], list[str]] = {}
-    for name in bodies:
-        touched = frozenset(obstacle for body, obstacle in scene.allowed if body == name)
-        groups.setdefault((placement[name][0], touched, claimed.padding.get(name, 0.0)), []).append(name)
-    around: dict[frozenset[str], int] = {}
+    for name, frame in places.items():
+        key = frame, frozenset(allowed.get(name, ())), claimed.padding.get(name, 0.0)
+        groups.setdefault(key, []).append(name)
+    obstacles = {
+        each.name: elements_of(each.body, IDENTITY, convex=each.name in claimed.convex, wider=each.clearance).native
+        for each in scene.obstacles
+    }
+    around: dict[frozenset[str], Node] = {}
     for (frame, touched, padding), names in groups.items():
-        others = [number for name, number in obstacles.items() if name not in touched]
+        others = [elements for name, elements in obstacles.items() if name not in touched]
         if frame == 0 or not others:
             continue
         if touched not in around:
-            around[touched] = len(nodes)
-            nodes.append(Node(0, tuple(others)))
-        nodes.append(Node(frame, tuple(number for name in names for number in bodies[name])))
-        yield len(nodes) - 1, around[touched], claimed.clearance + padding, (" and ".join(names), "an obstacle")
+            around[touched] = Node(0, others)
+        keep, said = claimed.clearance + padding, (" and ".join(names), "an obstacle")
+        yield Pair(node(tuple(names)), around[touched], keep, said)
 
 
-def touching_of(urdf: RobotDescription, scene: Scene, bodies: Container[str], claimed: Claimed) -> set[frozenset[str]]:
+def touching_of(
+    urdf: RobotDescription, scene: Scene, bodies: Container[str], claimed: Claimed
+) -> frozenset[frozenset[str]]:
     """Return pairs of links that may touch: those of the SRDF, else neighbours; and what a held body may."""
     touching = {frozenset((held.name, link)) for held in scene.attached for link in (held.link, *held.touches)}
-    return touching | (claimed.disabled or neighbours(urdf, bodies))
+    own = claimed.disabled or neighbours(urdf, bodies)
+    return own | touching if touching else own
 
 
-def neighbours(urdf: RobotDescription, bodied: Container[str]) -> set[frozenset[str]]:
+def neighbours(urdf: RobotDescription, bodied: Container[str]) -> frozenset[frozenset[str]]:
     """Return pairs of a link and the next one above it with a body where exactly one joint moves between them."""
     found = set[frozenset[str]]()
     above = {joint.child: joint for joint in urdf.joints}
@@ -185,4 +230,4 @@ def neighbours(urdf: RobotDescription, bodied: Container[str]) -> set[frozenset[
             if link in bodied:
                 found |= {frozenset((name, link))} if moving == 1 else set()
                 break
-    return found
+    return frozenset(found)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints, unique_rows
-from evenroad._native.certificates import ShapeTables
+from evenroad._native import certificates as native
+from evenroad._shared import once_property
 from evenroad.errors import NotAvailable
 from evenroad.geometry.mesh_file import load_mesh
 from evenroad.geometry.pose import Pose
@@ -29,6 +29,13 @@ class Elements:
     disc: float = 0.0
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     is_box: bool = False
+
+    @once_property
+    def native(self) -> native.Elements:
+        """The same for the kernel."""
+        corners = np.ascontiguousarray(self.corners)
+        points = np.ascontiguousarray(self.points)
+        return native.Elements(points, corners, self.radius, self.disc, np.array(self.axis), self.is_box)
 
 
 def elements_of(body: Shape, at: Pose, *, convex: bool = False, wider: float = 0.0) -> Elements:
@@ -60,13 +67,3 @@ def elements_of(body: Shape, at: Pose, *, convex: bool = False, wider: float = 0
         shape = (1, -1) if convex else (-1, 3)
         return Elements(points, number.reshape(shape).astype(np.int64), wider)
     raise NotAvailable(f"no certificate speaks of a {body.kind} yet; boxes, spheres, cylinders, capsules, meshes are")
-
-
-def tables_of(shapes: Sequence[Elements]) -> ShapeTables:
-    """Return the tables of some shapes."""
-    return ShapeTables(
-        np.concatenate([each.points for each in shapes]),
-        np.concatenate([each.corners.ravel() for each in shapes]),
-        np.array([(each.radius, each.disc, *each.axis) for each in shapes]),
-        np.array([(len(each.points), *each.corners.shape, each.is_box) for each in shapes], dtype=np.int64),
-    )

@@ -131,7 +131,7 @@ def in_contact(pairs: Claim, q: Floats, within: float = IN_CONTACT) -> tuple[str
     written = written_of(pairs, straight(np.stack([q, q])), _MOST)
     if written is None or written.touch.pair < 0 or not written.touch.most <= within:
         return None
-    return pairs.pairs[written.touch.pair][3]
+    return pairs.pairs[written.touch.pair].names
 
 
 def near_at(claim: WorldClaim, q: Floats) -> tuple[str, str] | None:

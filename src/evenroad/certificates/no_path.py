@@ -49,7 +49,7 @@ def certify_no_path(
     if not isinstance(world, ArmWorld):
         raise InvalidValue(f"a certificate is about an arm in a scene, not about {shown(world)}")
     claimed = claimed_by(sources, world)
-    urdf, scene = claimed.urdf, claimed.scene
+    urdf, scene = claimed.links.urdf, claimed.scene
     witnesses = witnesses_of(world.robot, urdf, scene, claimed.beside)
     slides = _slides(witnesses, urdf, scene)
     parts, left = [], np.ones(len(goals) + len(poses), dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""The files that a certificate is about: a robot's and a scene's as they are, or plain ones that it carries."""
+"""The files that a certificate is about: which ones are named, and a scene's as it is or as a plain one."""
 
 from __future__ import annotations
 
@@ -10,26 +10,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypedDict, Unpack
 
+from evenroad._shared import once_property
 from evenroad._yaml import read_mapping
-from evenroad.certificates.claim import neighbours
-from evenroad.certificates.plain import plain_robot, plain_scene, plain_srdf
+from evenroad.certificates.plain import plain_scene
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.errors import InvalidValue
-from evenroad.geometry.shapes import PRIMITIVES, Mesh
-from evenroad.loading.description import RobotDescription
+from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.loading.find import find_robot
-from evenroad.loading.load import read_robot
 from evenroad.loading.robot_file import RobotFile
-from evenroad.loading.srdf import read_srdf, with_moving_base
-from evenroad.robots.kinematics import held_values
 from evenroad.scenes.robot_in_scene import in_scene, scene_around
 from evenroad.scenes.scene import Scene
 from evenroad.scenes.scene_file import find_scene, load_scene
 
 PathLike = str | os.PathLike[str]
 _SECTIONS = {"obstacles", "allowed", "states", "limits", "attach", "name"}
-_MESHES = {".stl", ".obj", ".dae"}
-_ODD_XML = re.compile(rb"<xacro:|<!DOCTYPE|<!ENTITY|encoding=[\"'](?!utf-8)", re.IGNORECASE)
+MESHES = {".stl", ".obj", ".dae"}
 _ODD_YAML = re.compile(r"\t|^%|(?:^|[:,\-\[{]\s)\s*[&*!|>]", re.MULTILINE)
 
 
@@ -91,6 +85,11 @@ class Files:
         """Whether the certificate carries them."""
         return self.made_of is not None
 
+    @once_property
+    def digests(self) -> bytes:
+        """Their digests, one after the other."""
+        return b"".join(hashlib.sha256(each).digest() for each in self.contents)
+
 
 @dataclass(frozen=True)
 class RobotFiles(Files):
@@ -106,40 +105,13 @@ class SceneFiles(Files):
     convex: frozenset[str] = frozenset()
 
 
-def robot_files(sources: Sources, world: ArmWorld) -> tuple[RobotFiles, RobotDescription]:
-    """Return the files of a robot that plans in a world, and what they say.
-
-    A URDF stays as it is.  Another file, a base that the SRDF moves, and a robot without an SRDF of which pairs of
-    links are not tested, become a plain URDF and an SRDF, which the certificate carries.
-    """
-    urdf = read_robot(sources.file)
-    if sources.srdf is not None and not set(world.robot.group) <= set(urdf.order):
-        urdf = with_moving_base(urdf, sources.srdf)
-    if missing := set(world.robot.group) - set(urdf.order):
-        raise InvalidValue(f"joint {min(missing)!r} is none of the robot {sources.robot.name}: it is another robot")
-    said = None if sources.srdf is None else read_srdf(sources.srdf, urdf).disabled
-    untested = frozenset[frozenset[str]]() if said else _untested(world)
-    if untested <= neighbours(urdf, {shape.link for shape in urdf.shapes}):
-        untested = frozenset()
-    data = sources.robot.read_bytes()
-    if _is_plain_robot(sources, data, urdf, world) and not untested:
-        sources_of = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
-        meshes = [each.read_bytes() for each in sources_of if isinstance(each, Path)]
-        of_pairs = [b"" if sources.srdf is None else sources.srdf.read_bytes()]
-        of_pairs = of_pairs if sources.embed or sources.srdf is not None else []
-        return RobotFiles((data, *of_pairs, *meshes), _digest(data) if sources.embed else None, said), urdf
-    text, meshes_of = plain_robot(urdf)
-    srdf = sources.srdf.read_bytes() if said and sources.srdf else plain_srdf(urdf.name, untested)
-    return RobotFiles((text, srdf, *meshes_of), _digest(data), said or untested or None), urdf
-
-
 def scene_files(sources: Sources, world: ArmWorld, scene: Scene) -> SceneFiles:
     """Return the files of what a plan's world claims as its `scene`: its own file, or a plain one that is carried."""
     if sources.scene is None:
         return SceneFiles(plain_scene(scene), "-")
     data = sources.scene.read_bytes()
     read = load_scene(sources.scene)
-    made_of = _digest(data) if _says(read, world) else "-"
+    made_of = digest_of(data) if _says(read, world) else "-"
     entries = _plain_entries(sources.scene, data)
     if entries is None or made_of == "-":
         return SceneFiles(plain_scene(scene), made_of)
@@ -148,34 +120,9 @@ def scene_files(sources: Sources, world: ArmWorld, scene: Scene) -> SceneFiles:
     return SceneFiles((data, *meshes), made_of if sources.embed else None, convex)
 
 
-def _digest(data: bytes) -> str:
+def digest_of(data: bytes) -> str:
+    """Return the digest of a file as a header names it."""
     return hashlib.sha256(data).hexdigest()
-
-
-def _untested(world: ArmWorld) -> frozenset[frozenset[str]]:
-    """Return pairs of links with bodies, which planned joints move against each other, that a robot does not test."""
-    robot, bodied = world.robot, list(dict.fromkeys(each.link for each in world.robot.capsules))
-    tested, first = {frozenset(pair) for pair in robot.pairs}, {robot.links[0]: robot.links[0]}
-    for joint in robot.joints:
-        leader = joint.name if joint.mimic is None else joint.mimic.joint
-        first[joint.child] = joint.child if leader in robot.group else first[joint.parent]
-    links = [link for link in bodied if link not in robot.holds]
-    pairs = (frozenset((a, b)) for i, a in enumerate(links) for b in links[i + 1 :] if first[a] != first[b])
-    return frozenset(pair for pair in pairs if pair not in tested)
-
-
-def _is_plain_robot(sources: Sources, data: bytes, urdf: RobotDescription, world: ArmWorld) -> bool:
-    """Return whether a checker reads the file of a robot as it is."""
-    held = {name for name, value in held_values(world.robot).items() if value != 0.0}
-    coordinates = {joint.name for joint in urdf.joints if joint.of}
-    meshes = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
-    return (
-        sources.robot.suffix == ".urdf"
-        and not (sources.use_visuals or sources.upright_meshes)
-        and not _ODD_XML.search(data)
-        and not coordinates & {*world.robot.group, *held}
-        and all(isinstance(each, Path) and each.suffix.lower() in _MESHES for each in meshes)
-    )
 
 
 def _says(read: Scene, world: ArmWorld) -> bool:
@@ -209,6 +156,6 @@ def _plain_entries(path: Path, data: bytes) -> list[tuple[str, Mapping[str, obje
 def _is_plain(entry: Mapping[str, object]) -> bool:
     """Return whether a checker reads the entry of an obstacle."""
     if entry.get("shape") == "mesh":
-        return Path(str(entry.get("file"))).suffix.lower() in _MESHES
+        return Path(str(entry.get("file"))).suffix.lower() in MESHES
     short = [kind for kind in PRIMITIVES if kind in entry]
     return entry.get("shape") in (*PRIMITIVES, "plane") or ("shape" not in entry and len(short) == 1)

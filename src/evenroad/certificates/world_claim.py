@@ -10,8 +10,9 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from evenroad._arrays import Floats, unique_rows
+from evenroad._native.certificates import Node
 from evenroad._native.robot import closed_parts, winding_at
-from evenroad.certificates.claim import Claim, Claimed, Node, Tree, tree_of
+from evenroad.certificates.claim import Claim, Claimed, Pair, Tree, tree_of
 from evenroad.certificates.elements import Elements, elements_of
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry.parts import Parts, kinds_in_words
@@ -66,36 +67,26 @@ class WorldClaim:
 
     def one_by_one(self, pairs: Sequence[Apart], wider: float = 0.0) -> Claim:
         """Return these pairs as the kernel takes them, each by itself, with more to keep [m]."""
-        owners = sorted({owner for pair in pairs for owner in pair[:2]})
-        index = {owner: i for i, owner in enumerate(owners)}
-        nodes = tuple(self._node(self.numbers[owner]) for owner in owners)
-        every = tuple((index[a], index[b], keep + wider, (a.name, b.name)) for a, b, keep in pairs)
-        return self._claim(nodes, every)
+        nodes = [(self._node(self.numbers[first]), self._node(self.numbers[second])) for first, second, _ in pairs]
+        both = zip(nodes, pairs, strict=True)
+        return Claim(self.tree, tuple(Pair(*two, keep + wider, (a.name, b.name)) for two, (a, b, keep) in both))
 
     @cached_property
     def together(self) -> Claim:
         """All pairs that joints move, as the kernel takes them: a link with all obstacles of one distance at once."""
-        nodes: list[Node] = []
-        index: dict[tuple[int, ...], int] = {}
-
-        def node_of(numbers: tuple[int, ...]) -> int:
-            if numbers not in index:
-                index[numbers] = len(nodes)
-                nodes.append(self._node(numbers))
-            return index[numbers]
-
         around: dict[tuple[Owner, float], list[int]] = {}
         every = []
         for first, second, keep in self.moving:
             numbers = self.numbers[second]
             if second.is_obstacle:
                 around.setdefault((first, keep), []).extend(numbers)
-            else:
-                every.append((node_of(self.numbers[first]), node_of(numbers), keep, (first.name, second.name)))
+                continue
+            names = (first.name, second.name)
+            every.append(Pair(self._node(self.numbers[first]), self._node(numbers), keep, names))
         for (link, keep), obstacles in around.items():
-            pair = node_of(self.numbers[link]), node_of(tuple(obstacles))
-            every.append((*pair, keep, (link.name, _OBSTACLES)))
-        return self._claim(tuple(nodes), tuple(every))
+            both = self._node(self.numbers[link]), self._node(tuple(obstacles))
+            every.append(Pair(*both, keep, (link.name, _OBSTACLES)))
+        return Claim(self.tree, tuple(every))
 
     @cached_property
     def moving(self) -> tuple[Apart, ...]:
@@ -110,11 +101,16 @@ class WorldClaim:
     def _frame(self, owner: Owner) -> int:
         return self.bodies[self.numbers[owner][0]].frame
 
-    def _node(self, numbers: tuple[int, ...]) -> Node:
-        return Node(self.bodies[numbers[0]].frame, numbers)
+    @cached_property
+    def _nodes(self) -> dict[tuple[int, ...], Node]:
+        return {}
 
-    def _claim(self, nodes: tuple[Node, ...], pairs: tuple[tuple[int, int, float, tuple[str, str]], ...]) -> Claim:
-        return Claim(self.tree, tuple(body.elements for body in self.bodies), nodes, pairs)
+    def _node(self, numbers: tuple[int, ...]) -> Node:
+        """Return the node of some bodies of one frame, the same each time."""
+        if numbers not in self._nodes:
+            elements = [self.bodies[number].elements.native for number in numbers]
+            self._nodes.setdefault(numbers, Node(self.bodies[numbers[0]].frame, elements))
+        return self._nodes[numbers]
 
 
 _OBSTACLES = "an obstacle"

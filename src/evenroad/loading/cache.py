@@ -10,14 +10,14 @@ import hashlib
 import json
 import os
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import asdict, is_dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from types import UnionType
-from typing import get_args, get_origin, get_type_hints
+from typing import Generic, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from evenroad.loading.model import RobotModel
 from evenroad.loading.robot_file import RobotFile
 from evenroad.robots.robot import Robot
 
+Value = TypeVar("Value")
 _FORMAT = 28
 """Version of the cache: it counts up when the same files give another robot, or the format changes."""
 
@@ -95,8 +96,6 @@ def _written(array: Floats) -> object:
     return {"shape": array.shape, "bytes": base64.b64encode(array.tobytes()).decode()}
 
 
-_known: dict[object, tuple[dict[Path, tuple[int, ...]], RobotModel, RobotModel]] = {}
-"""Request of this process -> its files with their times, the robot, and a copy for comparison."""
 _AT_ONCE = 100_000_000
 """Age below which a file might be saved again without a new time stamp [ns]."""
 _FOLDERS = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
@@ -113,31 +112,57 @@ def stamps(files: Iterable[object]) -> dict[Path, tuple[int, ...]]:
     return found
 
 
+class Remembered(Generic[Value]):
+    """Values that this process made of files, each until one of its files is saved again."""
+
+    def __init__(self, most: int) -> None:
+        self._kept: dict[object, tuple[dict[Path, tuple[int, ...]], Value]] = {}
+        self._most = most
+
+    def __iter__(self) -> Iterator[Value]:
+        return (value for _, value in list(self._kept.values()))
+
+    def get(self, asked: object) -> Value | None:
+        """Return what was made of the same files, as they are."""
+        files, value = self._kept.get(_asked_here(asked), ({}, None))
+        return None if value is None or stamps(files) != files else value
+
+    def keep(self, asked: object, files: dict[Path, tuple[int, ...]], value: Value) -> None:
+        """Remember a value, but not where a robot's file, the first, includes others, or one was saved just now."""
+        content = next(iter(files)).read_bytes()
+        plain = b"<robot" in content and b"<xacro:" not in content and b"<mujoco" not in content
+        just_now = max(saved for saved, *_ in files.values()) > time.time_ns() - _AT_ONCE
+        if not plain or just_now or stamps(files) != files:
+            return
+        if len(self._kept) >= self._most:
+            self._kept.clear()
+        self._kept[_asked_here(asked)] = files, value
+
+
+_known: Remembered[tuple[RobotModel, RobotModel]] = Remembered(32)
+"""The robots of this process, each with a copy for comparison."""
+
+
 def known(asked: object) -> RobotModel | None:
     """Return the robot that was made of the same files in this process, if none of them was saved since."""
-    files, model, copy = _known.get(_asked_here(asked), ({}, None, None))
-    if model is None or copy is None or stamps(files) != files:
+    both = _known.get(asked)
+    if both is None:
         return None
     # Mappings are the only part of a robot that can change.
+    model, copy = both
     same = (model.robot.states, model.robot.held) == (copy.robot.states, copy.robot.held)
     return model if same else None
 
 
 def know(asked: object, files: dict[Path, tuple[int, ...]], model: RobotModel) -> None:
-    """Remember a robot for this process, but not where a file includes others, or was saved just now."""
-    content = next(iter(files)).read_bytes()
-    plain = b"<robot" in content and b"<xacro:" not in content and b"<mujoco" not in content
-    if not plain or max(saved for saved, *_ in files.values()) > time.time_ns() - _AT_ONCE or stamps(files) != files:
-        return
-    if len(_known) >= 32:
-        _known.clear()
+    """Remember a robot for this process."""
     robot = replace(model.robot, states=deepcopy(model.robot.states), held=dict(model.robot.held))
-    _known[_asked_here(asked)] = files, model, replace(model, robot=robot)
+    _known.keep(asked, files, (model, replace(model, robot=robot)))
 
 
 def file_of(robot: Robot) -> RobotFile | None:
     """Return the file that a robot was loaded from in this process, if that is known."""
-    for _, model, _ in reversed(list(_known.values())):
+    for model, _ in reversed(list(_known)):
         own = model.robot
         if (own.name, own.links, own.joints) == (robot.name, robot.links, robot.joints):
             return model.file

@@ -1,5 +1,6 @@
 // evenroad._native.certificates: writing a certificate.
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 
 #include "bind/arrays.hpp"
 #include "certificates/writer.hpp"
@@ -10,50 +11,35 @@ using namespace nb::literals;
 
 namespace {
 
-using Numbers = Array<const std::int64_t, 1>;
 using namespace certificates;
 
-std::size_t size_at(std::span<const std::int64_t> values, std::size_t at) {
-  return static_cast<std::size_t>(values[at]);
+/// Make elements of points, (p, 3), and the numbers of their corners, (n, c).
+void make_elements(Elements* self, nb::handle points, nb::handle corners, double radius, double disc, nb::handle axis,
+                   bool is_box) {
+  const FloatRows places = float_rows(points, "points", 3);
+  const Array<const std::int64_t, 2> numbers(corners, "corners");
+  const Floats along(axis, "axis");
+  along.of_shape({3});
+  require(numbers.size() > 0, "corners must be of one element or more");
+  require_below(numbers.span(), places.shape(0), "corners");
+  const auto [place, number, x] = std::tuple(places.span(), numbers.span(), along.span());
+  const std::size_t count = numbers.shape(0);
+  new (self) Elements{{place.begin(), place.end()},
+                      {number.begin(), number.end()},
+                      count,
+                      radius,
+                      disc,
+                      Vector{x[0], x[1], x[2]},
+                      is_box && count == 1 && numbers.shape(1) == 8};
 }
 
-/// The arrays of all shapes, kept as long as the nodes that look at them.
-struct ShapeTables {
-  ShapeTables(nb::handle points, nb::handle corners, nb::handle sizes, nb::handle numbers)
-      : points(points, "points"), corners(corners, "corners"), sizes(sizes, "sizes"), numbers(numbers, "numbers") {}
-
-  std::vector<Elements> shapes() const {
-    const std::size_t count = sizes.shape(0);
-    points.of_shape({points.shape(0), 3}), sizes.of_shape({count, 5}), numbers.of_shape({count, 4});
-    std::vector<Elements> shapes;
-    std::size_t point = 0, corner = 0;
-    for (std::size_t i = 0; i < count; i++) {
-      const auto row = numbers.matrix()[i];
-      const auto size = sizes.matrix()[i];
-      for (const std::int64_t each : row) require(each >= 0, "numbers must be >= 0");
-      const std::size_t elements = size_at(row, 1), each = size_at(row, 2);
-      require(elements > 0 && each > 0, "numbers must name elements with corners");
-      require(size_at(row, 0) <= points.shape(0) - point && each <= (corners.size() - corner) / elements,
-              "numbers must be of as many points and corners as there are");
-      Elements& shape = shapes.emplace_back();
-      shape.points = points.span().subspan(3 * point, 3 * size_at(row, 0));
-      shape.corners = corners.span().subspan(corner, elements * each);
-      require_below(shape.corners, size_at(row, 0), "corners");
-      point += size_at(row, 0), corner += elements * each;
-      shape.count = elements, shape.radius = size[0], shape.disc = size[1];
-      shape.is_box = row[3] != 0 && elements == 1 && each == 8;
-      for (int axis = 0; axis < 3; axis++) {
-        shape.axis[axis] = size[2 + static_cast<std::size_t>(axis)];
-      }
-    }
-    return shapes;
-  }
-
-  FloatRows points;
-  Numbers corners;
-  FloatRows sizes;
-  Array<const std::int64_t, 2> numbers;
-};
+/// Make a node of whole shapes.
+void make_node(Node* self, std::int64_t frame, nb::sequence shapes) {
+  std::vector<std::shared_ptr<const Elements>> all;
+  for (nb::handle each : shapes) all.push_back(value_of<std::shared_ptr<Elements>>(each, "shapes"));
+  require(frame >= 0 && !all.empty(), "a node must be of a frame, and have shapes");
+  new (self) Node(frame, all);
+}
 
 /// The arrays of the joints that move frames.
 struct JointTables {
@@ -117,35 +103,21 @@ struct Paths {
   std::vector<Kept> kept;
 };
 
-std::optional<Answers> write_answers(const ShapeTables& tables, const JointTables& moving, nb::handle nodes,
-                                     nb::handle shapes, nb::handle pairs, nb::handle keeps, const Paths& paths,
+std::optional<Answers> write_answers(const JointTables& moving, nb::sequence pairs, const Paths& paths,
                                      std::int64_t most) {
   require_below(most, std::size_t{1} << 24, "most");
   require_below(std::span(moving.column), paths.joints(), "columns");
-  for (const Kept& each : paths.kept) {
-    require(each.frame >= 0 && static_cast<std::size_t>(each.frame) <= moving.parent.size(), "frames must exist");
-  }
-  const Array<const std::int64_t, 2> rows(nodes, "nodes"), both(pairs, "pairs");
-  const Numbers members(shapes, "shapes");
-  const Floats keep(keeps, "keeps");
-  rows.of_shape({rows.shape(0), 3}), both.of_shape({keep.size(), 2});
-  require_below(members.span(), tables.sizes.shape(0), "shapes");
-  require_below(both.span(), rows.shape(0), "pairs");
-  Nodes all(tables.shapes());
-  for (std::size_t i = 0; i < rows.shape(0); i++) {
-    const auto row = rows.matrix()[i];
-    require_below(row[0], moving.parent.size() + 1, "frames");
-    require(row[1] >= 0 && row[2] > row[1] && size_at(row, 2) <= members.size(), "nodes must have shapes");
-    all.add_whole(row[0], members.span().subspan(size_at(row, 1), size_at(row, 2) - size_at(row, 1)));
-  }
+  for (const Kept& each : paths.kept) require_below(each.frame, moving.parent.size() + 1, "frames");
   std::vector<Pair> every;
-  for (std::size_t i = 0; i < keep.size(); i++)
-    every.push_back({both.matrix()(i, 0), both.matrix()(i, 1), keep.span()[i]});
+  for (nb::handle each : pairs) {
+    const Pair& pair = every.emplace_back(value_of<Pair>(each, "pairs"));
+    for (const auto& node : {pair.first, pair.second}) require_below(node->frame, moving.parent.size() + 1, "frames");
+  }
   Written written;
   try {
     written = without_gil([&] {
       Motions motions(moving.frames(), {paths.curves.span(), paths.joints()}, paths.tolerance);
-      return write(all, motions, paths.curves.shape(0), every, paths.kept, static_cast<std::size_t>(most));
+      return write(motions, paths.curves.shape(0), every, paths.kept, static_cast<std::size_t>(most));
     });
   } catch (const TooLong&) {
     return std::nullopt;
@@ -157,9 +129,17 @@ std::optional<Answers> write_answers(const ShapeTables& tables, const JointTable
 
 void add_certificates(nb::module_& module) {
   nb::module_ part = module.def_submodule("certificates", "Writing a certificate.");
-  nb::class_<ShapeTables>(part, "ShapeTables")
-      .def(nb::init<nb::handle, nb::handle, nb::handle, nb::handle>(), "points"_a.none(), "corners"_a.none(),
-           "sizes"_a.none(), "numbers"_a.none());
+  nb::class_<Elements>(part, "Elements")
+      .def("__init__", &make_elements, "points"_a.none(), "corners"_a.none(), "radius"_a, "disc"_a, "axis"_a.none(),
+           "is_box"_a);
+  nb::class_<Node>(part, "Node").def("__init__", &make_node, "frame"_a, "shapes"_a);
+  nb::class_<Pair>(part, "Pair")
+      .def(
+          "__init__",
+          [](Pair* self, std::shared_ptr<Node> first, std::shared_ptr<Node> second, double keep) {
+            new (self) Pair{std::move(first), std::move(second), keep};
+          },
+          "first"_a, "second"_a, "keep"_a);
   nb::class_<JointTables>(part, "JointTables")
       .def(nb::init<nb::handle, nb::handle, nb::handle>(), "links"_a.none(), "poses"_a.none(), "rules"_a.none());
   nb::class_<Paths>(part, "Paths")
@@ -175,8 +155,7 @@ void add_certificates(nb::module_& module) {
       .def_ro("answers", &Answers::answers)
       .def_ro("directions", &Answers::directions)
       .def_ro("touch", &Answers::touch);
-  part.def("write_answers", &write_answers, "shape_tables"_a, "joint_tables"_a, "nodes"_a.none(), "shapes"_a.none(),
-           "pairs"_a.none(), "keeps"_a.none(), "paths"_a, "most"_a);
+  part.def("write_answers", &write_answers, "joint_tables"_a, "pairs"_a, "paths"_a, "most"_a);
 }
 
 }  // namespace evenroad::bind

@@ -38,7 +38,7 @@ Vector row_of(std::span<const double> values, std::size_t row) {
 
 Vector placed(const Moving& moving, const Vector& own) { return applied(moving.turn, own) + moving.origin; }
 
-Vector middle_of(const Nodes& nodes, const Moving& moving) { return placed(moving, nodes[moving.node].centre); }
+Vector middle_of(const Moving& moving) { return placed(moving, moving.node->centre); }
 
 Vector as_seen(const Moving& moving, const Vector& functional) {
   const Turn& turn = moving.turn;
@@ -124,26 +124,26 @@ Carried Motions::carried(const Task& task, std::int64_t frame, double reach) {
   return carried(state(task), task.half(), frame, 0, reach);
 }
 
-Moved Motions::moved(const Nodes& nodes, const Task& task) {
+Moved Motions::moved(const Task& task) {
   const State& at = state(task);
   Moved moved;
   moved.half = task.half();
-  const std::int64_t both[2] = {task.first, task.second};
-  const auto &chain = chains_[static_cast<std::size_t>(nodes[both[0]].frame)],
-             &other = chains_[static_cast<std::size_t>(nodes[both[1]].frame)];
+  const Node* const both[2] = {task.first, task.second};
+  const auto &chain = chains_[static_cast<std::size_t>(both[0]->frame)],
+             &other = chains_[static_cast<std::size_t>(both[1]->frame)];
   std::size_t shared = 0;
   while (shared < chain.size() && shared < other.size() && chain[shared] == other[shared]) shared++;
   for (int side = 0; side < 2; side++) {
-    const Node& node = nodes[both[side]];
+    const Node& node = *both[side];
     const Carried one = carried(at, moved.half, node.frame, shared, node.reach);
     moved.nodes[side] = one.moving;
-    moved.nodes[side].node = both[side];
+    moved.nodes[side].node = &node;
     moved.stray += one.stray, moved.loose += one.loose;
   }
   return moved;
 }
 
-double gap(const Nodes& nodes, const Moved& moved, const Vector& direction, By by) {
+double gap(const Moved& moved, const Vector& direction, By by) {
   double extremes[2] = {0.0, 0.0};
   for (int side = 0; side < 2; side++) {
     const Moving& moving = moved.nodes[side];
@@ -152,7 +152,7 @@ double gap(const Nodes& nodes, const Moved& moved, const Vector& direction, By b
     for (int end = 0; end < 2; end++) {
       const double time = end == 0 ? moved.half : -moved.half;
       const Vector functional = (direction + across * time) * sign, own = as_seen(moving, functional);
-      extremes[end] += by == By::BOXES ? nodes.box_reach(moving.node, own) : dot(own, nodes.farthest(moving.node, own));
+      extremes[end] += by == By::BOXES ? moving.node->box_reach(own) : dot(own, moving.node->farthest(own));
       extremes[end] += dot(functional, moving.origin) + sign * time * dot(direction, moving.drift);
     }
   }

@@ -34,7 +34,8 @@ struct Curves {
 
 /// A pair of nodes during a part of a motion: the part `number` of 2^level.
 struct Task {
-  std::int64_t motion = 0, number = 0, level = 0, first = 0, second = 0, pair = 0;
+  std::int64_t motion = 0, number = 0, level = 0, pair = 0;
+  const Node *first = nullptr, *second = nullptr;
   double half() const { return 1.0 / static_cast<double>(std::uint64_t{2} << level); }
   double begin() const { return static_cast<double>(motion) + 2.0 * static_cast<double>(number) * half(); }
   double middle() const { return begin() + half(); }
@@ -42,7 +43,7 @@ struct Task {
 
 /// One of the two nodes of a task in the middle of its stretch, and how it moves against the other one.
 struct Moving {
-  std::int64_t node = 0;
+  const Node* node = nullptr;
   Turn turn{};
   Vector origin{}, spin{}, drift{};
 };
@@ -66,7 +67,7 @@ struct Carried {
 Vector placed(const Moving& moving, const Vector& own);
 
 /// Return the middle of a node's box in the root's frame.
-Vector middle_of(const Nodes& nodes, const Moving& moving);
+Vector middle_of(const Moving& moving);
 
 /// Return a functional of the root's frame as one of the node's own frame.
 Vector as_seen(const Moving& moving, const Vector& functional);
@@ -76,7 +77,7 @@ class Motions {
   /// Joints are as far as `tolerance` from the curves.
   Motions(const Frames& frames, const Curves& curves, double tolerance);
 
-  Moved moved(const Nodes& nodes, const Task& task);
+  Moved moved(const Task& task);
 
   /// Return the same of a frame and what is as far as `reach` from its origin, against the root.
   Carried carried(const Task& task, std::int64_t frame, double reach);
@@ -102,6 +103,6 @@ class Motions {
 enum class By { BOXES, CORNERS };
 
 /// Return by how much a unit direction separates the nodes of a task all the time, beyond what they stray.
-double gap(const Nodes& nodes, const Moved& moved, const Vector& direction, By by);
+double gap(const Moved& moved, const Vector& direction, By by);
 
 }  // namespace evenroad::certificates

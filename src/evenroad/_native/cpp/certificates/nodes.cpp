@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace evenroad::certificates {
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double PER_METRE = 1048576.0;  // steps to which the middles of elements are rounded
 
-Vector vector_at(std::span<const double> values, std::int64_t row) {
+Vector vector_at(const std::vector<double>& values, std::int64_t row) {
   const std::size_t at = 3 * static_cast<std::size_t>(row);
   return {values[at], values[at + 1], values[at + 2]};
 }
@@ -29,63 +30,18 @@ int widest_axis(const std::vector<Vector>& points) {
   return widest;
 }
 
-}  // namespace
-
-void Nodes::add_whole(std::int64_t frame, std::span<const std::int64_t> shapes) {
+std::vector<Part> whole(const std::vector<std::shared_ptr<const Elements>>& shapes) {
   std::vector<Part> parts;
-  for (const std::int64_t shape : shapes) {
+  for (const auto& shape : shapes) {
     Part& part = parts.emplace_back();
-    part.shape = static_cast<std::size_t>(shape);
-    part.rows.resize(shapes_[part.shape].count);
+    part.shape = shape;
+    part.rows.resize(shape->count);
     std::iota(part.rows.begin(), part.rows.end(), std::int64_t{0});
   }
-  add(frame, std::move(parts));
+  return parts;
 }
 
-std::int64_t Nodes::add(std::int64_t frame, std::vector<Part>&& parts) {
-  Node& node = nodes_.emplace_back();
-  node.frame = frame;
-  constexpr double FAR = std::numeric_limits<double>::infinity();
-  Vector low{FAR, FAR, FAR}, high{-FAR, -FAR, -FAR};
-  for (Part& part : parts) {
-    const Elements& shape = shapes_[part.shape];
-    const std::size_t each = shape.corners.size() / shape.count;
-    for (const std::int64_t row : part.rows) {
-      const auto from = shape.corners.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * each);
-      part.points.insert(part.points.end(), from, from + static_cast<std::ptrdiff_t>(each));
-    }
-    std::sort(part.points.begin(), part.points.end());
-    part.points.erase(std::unique(part.points.begin(), part.points.end()), part.points.end());
-    node.elements += part.rows.size(), node.corners += part.points.size();
-    for (const std::int64_t point : part.points) {
-      const Vector at = vector_at(shape.points, point);
-      node.reach = std::max(node.reach, std::sqrt(squared_length(at)) + shape.radius + shape.disc);
-      for (int axis = 0; axis < 3; axis++) {
-        const double aside = 1.0 - shape.axis[axis] * shape.axis[axis];
-        const double wide = shape.radius + shape.disc * std::sqrt(std::max(0.0, aside));
-        low[axis] = std::min(low[axis], at[axis] - wide), high[axis] = std::max(high[axis], at[axis] + wide);
-      }
-    }
-  }
-  node.centre = (low + high) * 0.5;
-  for (int axis = 0; axis < 3; axis++) node.box[axis][axis] = 0.5 * (high[axis] - low[axis]);
-  if (parts.size() == 1 && shapes_[parts[0].shape].is_box) {
-    const Elements& shape = shapes_[parts[0].shape];
-    const auto corner = [&](int number) {
-      return vector_at(shape.points, shape.corners[static_cast<std::size_t>(number)]);
-    };
-    node.centre = (corner(0) + corner(7)) * 0.5;
-    for (int axis = 0; axis < 3; axis++) {
-      const Vector edge = (corner(4 >> axis) - corner(0)) * 0.5;
-      node.box[axis] = edge * (1.0 + shape.radius / std::max(std::sqrt(squared_length(edge)), 1e-12));
-    }
-  }
-  node.parts = std::move(parts);
-  return static_cast<std::int64_t>(nodes_.size()) - 1;
-}
-
-Vector Nodes::middle(std::size_t shape, std::int64_t row) const {
-  const Elements& elements = shapes_[shape];
+Vector middle(const Elements& elements, std::int64_t row) {
   const std::size_t each = elements.corners.size() / elements.count;
   Vector sum{};
   for (std::size_t i = 0; i < each; i++) {
@@ -95,50 +51,89 @@ Vector Nodes::middle(std::size_t shape, std::int64_t row) const {
   return sum;
 }
 
-std::int64_t Nodes::half(std::int64_t number, int side) {
-  if (nodes_[static_cast<std::size_t>(number)].halves[0] < 0) {
-    const Node& node = (*this)[number];
-    const std::int64_t frame = node.frame;
-    // Rounded: programs that differ in a last bit choose one axis, and order the elements alike.  Ties are in the order
-    // of the file.
-    std::vector<Vector> middles;
-    for (const Part& part : node.parts) {
-      for (const std::int64_t row : part.rows) {
-        Vector& rounded = middles.emplace_back(middle(part.shape, row));
-        for (double& value : rounded.at) value = std::rint(PER_METRE * value);
-      }
+}  // namespace
+
+Node::Node(std::int64_t frame, const std::vector<std::shared_ptr<const Elements>>& shapes)
+    : Node(frame, whole(shapes)) {}
+
+Node::Node(std::int64_t in_frame, std::vector<Part>&& parts) : frame(in_frame), parts_(std::move(parts)) {
+  constexpr double FAR = std::numeric_limits<double>::infinity();
+  Vector low{FAR, FAR, FAR}, high{-FAR, -FAR, -FAR};
+  for (Part& part : parts_) {
+    const Elements& shape = *part.shape;
+    const std::size_t each = shape.corners.size() / shape.count;
+    for (const std::int64_t row : part.rows) {
+      const auto from = shape.corners.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * each);
+      part.points.insert(part.points.end(), from, from + static_cast<std::ptrdiff_t>(each));
     }
-    std::vector<double> along;
-    const int axis = widest_axis(middles);
-    for (const Vector& each : middles) along.push_back(each[axis]);
-    std::vector<std::size_t> order(along.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return along[a] < along[b]; });
-    std::vector<char> is_first(order.size());
-    for (std::size_t i = 0; i < order.size() / 2; i++) is_first[order[i]] = 1;
-    std::vector<Part> sides[2];
-    std::size_t element = 0;
-    for (const Part& part : node.parts) {
-      Part split[2] = {{part.shape, {}, {}}, {part.shape, {}, {}}};
-      for (const std::int64_t row : part.rows) split[is_first[element++] != 0 ? 0 : 1].rows.push_back(row);
-      for (int each = 0; each < 2; each++) {
-        if (!split[each].rows.empty()) sides[each].push_back(std::move(split[each]));
+    std::sort(part.points.begin(), part.points.end());
+    part.points.erase(std::unique(part.points.begin(), part.points.end()), part.points.end());
+    elements += part.rows.size(), corners += part.points.size();
+    for (const std::int64_t point : part.points) {
+      const Vector at = vector_at(shape.points, point);
+      reach = std::max(reach, std::sqrt(squared_length(at)) + shape.radius + shape.disc);
+      for (int axis = 0; axis < 3; axis++) {
+        const double aside = 1.0 - shape.axis[axis] * shape.axis[axis];
+        const double wide = shape.radius + shape.disc * std::sqrt(std::max(0.0, aside));
+        low[axis] = std::min(low[axis], at[axis] - wide), high[axis] = std::max(high[axis], at[axis] + wide);
       }
-    }
-    for (int each = 0; each < 2; each++) {
-      const std::int64_t added = add(frame, std::move(sides[each]));
-      nodes_[static_cast<std::size_t>(number)].halves[each] = added;
     }
   }
-  return nodes_[static_cast<std::size_t>(number)].halves[side];
+  centre = (low + high) * 0.5;
+  for (int axis = 0; axis < 3; axis++) box[axis][axis] = 0.5 * (high[axis] - low[axis]);
+  if (parts_.size() != 1 || !parts_[0].shape->is_box) return;
+  const Elements& shape = *parts_[0].shape;
+  const auto corner = [&](int number) {
+    return vector_at(shape.points, shape.corners[static_cast<std::size_t>(number)]);
+  };
+  centre = (corner(0) + corner(7)) * 0.5;
+  for (int axis = 0; axis < 3; axis++) {
+    const Vector edge = (corner(4 >> axis) - corner(0)) * 0.5;
+    box[axis] = edge * (1.0 + shape.radius / std::max(std::sqrt(squared_length(edge)), 1e-12));
+  }
 }
 
-Vector Nodes::farthest(std::int64_t number, const Vector& along) const {
+const Node& Node::half(int side) const {
+  std::call_once(halved_, [this] { halve(); });
+  return *halves_[side];
+}
+
+void Node::halve() const {
+  // Rounded: programs that differ in a last bit choose one axis, and order the elements alike.  Ties are in the order
+  // of the file.
+  std::vector<Vector> middles;
+  for (const Part& part : parts_) {
+    for (const std::int64_t row : part.rows) {
+      Vector& rounded = middles.emplace_back(middle(*part.shape, row));
+      for (double& value : rounded.at) value = std::rint(PER_METRE * value);
+    }
+  }
+  std::vector<double> along;
+  const int axis = widest_axis(middles);
+  for (const Vector& each : middles) along.push_back(each[axis]);
+  std::vector<std::size_t> order(along.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return along[a] < along[b]; });
+  std::vector<char> is_first(order.size());
+  for (std::size_t i = 0; i < order.size() / 2; i++) is_first[order[i]] = 1;
+  std::vector<Part> sides[2];
+  std::size_t element = 0;
+  for (const Part& part : parts_) {
+    Part split[2] = {{part.shape, {}, {}}, {part.shape, {}, {}}};
+    for (const std::int64_t row : part.rows) split[is_first[element++] != 0 ? 0 : 1].rows.push_back(row);
+    for (int each = 0; each < 2; each++) {
+      if (!split[each].rows.empty()) sides[each].push_back(std::move(split[each]));
+    }
+  }
+  for (int each = 0; each < 2; each++) halves_[each] = std::make_unique<const Node>(frame, std::move(sides[each]));
+}
+
+Vector Node::farthest(const Vector& along) const {
   const double size = std::sqrt(squared_length(along));
   double best = -std::numeric_limits<double>::infinity();
   Vector found{};
-  for (const Part& part : (*this)[number].parts) {
-    const Elements& shape = shapes_[part.shape];
+  for (const Part& part : parts_) {
+    const Elements& shape = *part.shape;
     double far = -std::numeric_limits<double>::infinity();
     Vector here{};
     for (const std::int64_t point : part.points) {
@@ -157,10 +152,9 @@ Vector Nodes::farthest(std::int64_t number, const Vector& along) const {
   return found;
 }
 
-double Nodes::box_reach(std::int64_t number, const Vector& along) const {
-  const Node& node = (*this)[number];
-  return dot(along, node.centre) + std::abs(dot(along, node.box[0])) + std::abs(dot(along, node.box[1])) +
-         std::abs(dot(along, node.box[2]));
+double Node::box_reach(const Vector& along) const {
+  return dot(along, centre) + std::abs(dot(along, box[0])) + std::abs(dot(along, box[1])) +
+         std::abs(dot(along, box[2]));
 }
 
 }  // namespace evenroad::certificates

@@ -12,16 +12,15 @@ namespace {
 constexpr int MOST_ROUNDS = 60;
 constexpr double NOTHING = 1e-11;  // length of a vector without a direction [m]
 
-Vector farthest_by(const Nodes& nodes, const Moving& moving, const Vector& own, By by) {
-  if (by == By::CORNERS) return nodes.farthest(moving.node, own);
-  const Node& node = nodes[moving.node];
+Vector farthest_by(const Node& node, const Vector& own, By by) {
+  if (by == By::CORNERS) return node.farthest(own);
   Vector point = node.centre;
   for (const Vector& half : node.box) point = point + half * (dot(half, own) < 0.0 ? -1.0 : 1.0);
   return point;
 }
 
 /// Return the place of the second node less that of the first one that is least along a direction.
-Vector least_along(const Nodes& nodes, const Moved& moved, const Vector& direction, By by, When when) {
+Vector least_along(const Moved& moved, const Vector& direction, By by, When when) {
   double least = std::numeric_limits<double>::infinity();
   Vector found{};
   for (int end = 0; end < (when == When::BOTH ? 2 : 1); end++) {
@@ -31,7 +30,7 @@ Vector least_along(const Nodes& nodes, const Moved& moved, const Vector& directi
       const Moving& moving = moved.nodes[side];
       const double sign = side == 0 ? 1.0 : -1.0;
       const Vector functional = (direction + cross(direction, moving.spin) * time) * sign;
-      const Vector own = farthest_by(nodes, moving, as_seen(moving, functional), by);
+      const Vector own = farthest_by(*moving.node, as_seen(moving, functional), by);
       Vector point = placed(moving, own);
       point = point + (moving.drift + cross(moving.spin, point)) * time;
       apart = apart - point * sign;
@@ -51,7 +50,7 @@ bool has(const robot::Simplex& simplex, const Vector& point) {
 
 }  // namespace
 
-Separation separate(const Nodes& nodes, const Moved& moved, const Vector& first, By by, When when, double enough) {
+Separation separate(const Moved& moved, const Vector& first, By by, When when, double enough) {
   constexpr double FAR = std::numeric_limits<double>::infinity();
   Separation best{{1.0, 0.0, 0.0}, -FAR, FAR};
   robot::Simplex simplex;
@@ -60,7 +59,7 @@ Separation separate(const Nodes& nodes, const Moved& moved, const Vector& first,
   for (int round = 0; round < MOST_ROUNDS; round++) {
     const double size = std::sqrt(squared_length(v));
     if (size < NOTHING) break;
-    const Vector unit = v * (1.0 / size), point = least_along(nodes, moved, unit, by, when);
+    const Vector unit = v * (1.0 / size), point = least_along(moved, unit, by, when);
     const double gap = dot(point, unit);
     if (gap > best.gap) best.direction = unit, best.gap = gap;
     if (best.gap > enough || simplex.size == 4 || has(simplex, point)) break;

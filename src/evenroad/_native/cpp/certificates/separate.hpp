@@ -15,6 +15,6 @@ enum class When { BOTH, MIDDLE };
 
 /// Search the direction from a first one, until the gap is `enough`: by GJK between the second set less the first one,
 /// which is the hull of what both nodes are at the ends of the stretch.
-Separation separate(const Nodes& nodes, const Moved& moved, const Vector& first, By by, When when, double enough);
+Separation separate(const Moved& moved, const Vector& first, By by, When when, double enough);
 
 }  // namespace evenroad::certificates

@@ -30,28 +30,27 @@ double size_of(const Node& node) {
 
 class Writer {
  public:
-  Writer(Nodes& nodes, Motions& motions, std::span<const Pair> pairs)
-      : nodes_(nodes), motions_(motions), pairs_(pairs) {}
+  Writer(Motions& motions, std::span<const Pair> pairs) : motions_(motions), pairs_(pairs) {}
 
   Written written;
 
   /// Answer one task.
   Answer answer(const Task& task) {
-    const Moved moved = motions_.moved(nodes_, task);
+    const Moved moved = motions_.moved(task);
     const double keep = pairs_[static_cast<std::size_t>(task.pair)].keep;
     const double enough = keep + LEAST + SPARE, strayed = moved.strayed();
-    const Vector between = middle_of(nodes_, moved.nodes[1]) - middle_of(nodes_, moved.nodes[0]);
+    const Vector between = middle_of(moved.nodes[1]) - middle_of(moved.nodes[0]);
     const double distance = length(between);
-    if (distance > 1e-3 && gap(nodes_, moved, between * (1.0 / distance), By::BOXES) > enough) return BY_CENTRES;
-    const Node &first = nodes_[task.first], &second = nodes_[task.second];
+    if (distance > 1e-3 && gap(moved, between * (1.0 / distance), By::BOXES) > enough) return BY_CENTRES;
+    const Node &first = *task.first, &second = *task.second;
     const bool many = std::max(first.corners, second.corners) > MANY;
     const By by = many ? By::BOXES : By::CORNERS;
-    const Separation best = separate(nodes_, moved, between, by, When::BOTH, enough + strayed + AMPLE);
+    const Separation best = separate(moved, between, by, When::BOTH, enough + strayed + AMPLE);
     if (best.gap > 0.0) {
       if (const auto answer = by_direction(moved, best.direction, enough, by)) return *answer;
     }
     if (many) return first.corners > MANY ? HALVE_FIRST : HALVE_SECOND;
-    const Separation at_middle = separate(nodes_, moved, between, by, When::MIDDLE, 1e9);
+    const Separation at_middle = separate(moved, between, by, When::MIDDLE, 1e9);
     const double still = at_middle.gap - keep - moved.loose, travel = at_middle.gap - best.gap;
     const bool both = first.elements == 1 && second.elements == 1;
     const Answer halve = first.elements == 1                ? HALVE_SECOND
@@ -77,8 +76,8 @@ class Writer {
     for (int side = 0; side < 2; side++) {
       Task half = task;
       if (answer == HALVE_TIME) half.number = 2 * task.number + side, half.level++;
-      if (answer == HALVE_FIRST) half.first = nodes_.half(task.first, side);
-      if (answer == HALVE_SECOND) half.second = nodes_.half(task.second, side);
+      if (answer == HALVE_FIRST) half.first = &task.first->half(side);
+      if (answer == HALVE_SECOND) half.second = &task.second->half(side);
       if (half.level <= DEEPEST) tasks.push_back(half);
     }
   }
@@ -91,8 +90,8 @@ class Writer {
     for (int axis = 0; axis < 3; axis++) stored[axis] = static_cast<float>(direction[axis]), read[axis] = stored[axis];
     read = read * (1.0 / length(read));
     std::optional<Answer> answer;
-    if (gap(nodes_, moved, read, By::BOXES) > enough) answer = BY_BOXES;
-    if (!answer && by == By::CORNERS && gap(nodes_, moved, read, By::CORNERS) > enough) answer = BY_CORNERS;
+    if (gap(moved, read, By::BOXES) > enough) answer = BY_BOXES;
+    if (!answer && by == By::CORNERS && gap(moved, read, By::CORNERS) > enough) answer = BY_CORNERS;
     if (answer) written.directions.insert(written.directions.end(), stored, stored + 3);
     return answer;
   }
@@ -105,7 +104,6 @@ class Writer {
     written.touch = {task.motion, task.pair, when - static_cast<double>(task.motion), still, most};
   }
 
-  Nodes& nodes_;
   Motions& motions_;
   std::span<const Pair> pairs_;
   double touched_ = -1.0;  // where on the path, in motions
@@ -113,15 +111,15 @@ class Writer {
 
 }  // namespace
 
-Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<const Pair> pairs,
-              std::span<const Kept> kept, std::size_t most) {
-  Writer writer(nodes, motions, pairs);
+Written write(Motions& motions, std::size_t curves, std::span<const Pair> pairs, std::span<const Kept> kept,
+              std::size_t most) {
+  Writer writer(motions, pairs);
   ClockWatch clock(64);
   std::vector<Task> tasks;
   for (std::size_t motion = 0; motion < curves; motion++) {
     for (std::size_t pair = 0; pair < pairs.size(); pair++) {
-      tasks.push_back({static_cast<std::int64_t>(motion), 0, 0, pairs[pair].first, pairs[pair].second,
-                       static_cast<std::int64_t>(pair)});
+      tasks.push_back({static_cast<std::int64_t>(motion), 0, 0, static_cast<std::int64_t>(pair),
+                       pairs[pair].first.get(), pairs[pair].second.get()});
     }
   }
   for (std::size_t next = 0; next < tasks.size(); next++) {
@@ -138,7 +136,7 @@ Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<cons
   tasks.clear();
   for (std::size_t motion = 0; motion < curves; motion++) {
     for (std::size_t k = 0; k < kept.size(); k++) {
-      tasks.push_back({static_cast<std::int64_t>(motion), 0, 0, 0, 0, static_cast<std::int64_t>(k)});
+      tasks.push_back({static_cast<std::int64_t>(motion), 0, 0, static_cast<std::int64_t>(k), nullptr, nullptr});
     }
   }
   for (std::size_t next = 0; next < tasks.size(); next++) {

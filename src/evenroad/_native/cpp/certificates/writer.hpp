@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace evenroad::certificates {
 
 /// Two nodes, and the distance that they are to keep [m].
 struct Pair {
-  std::int64_t first = 0, second = 0;
+  std::shared_ptr<const Node> first, second;
   double keep = 0.0;
 };
 
@@ -32,8 +33,8 @@ struct Written {
 };
 
 /// Write the answers to at most `most` tasks of pairs, and of constraints; TooLong where there are more.
-Written write(Nodes& nodes, Motions& motions, std::size_t curves, std::span<const Pair> pairs,
-              std::span<const Kept> kept, std::size_t most);
+Written write(Motions& motions, std::size_t curves, std::span<const Pair> pairs, std::span<const Kept> kept,
+              std::size_t most);
 
 struct TooLong {};
 
