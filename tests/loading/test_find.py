@@ -1,4 +1,5 @@
 import importlib.metadata
+from functools import cache
 
 import pytest
 
@@ -21,6 +22,12 @@ class Wheel:
 
     def locate_file(self, path):
         return self.root / path
+
+
+@pytest.fixture(autouse=True)
+def forgets(monkeypatch):
+    """Nothing that was found before counts, nor does what a test finds."""
+    monkeypatch.setattr(find, "_example_files", cache(find._example_files.__wrapped__))
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import cache
 from pathlib import Path
 
 from evenroad._checks import as_file
@@ -65,12 +66,19 @@ def example_robots() -> dict[str, Path]:
     A name is that of the file: ``panda``, ``ur5_gripper``.
     """
     # Imported late: it takes longer to load than a shipped robot.
-    from importlib.metadata import PackageNotFoundError, distribution
+    from importlib.metadata import PackageNotFoundError
 
     try:
-        folder = Path(str(distribution(WHEEL).locate_file(_FOLDER)))
+        return _example_files()
     except PackageNotFoundError:
         return {}
+
+
+@cache
+def _example_files() -> dict[str, Path]:
+    from importlib.metadata import distribution
+
+    folder = Path(str(distribution(WHEEL).locate_file(_FOLDER)))
     # Two packages may have a file of one name: the first in the order of folders keeps it.
     files = sorted([*folder.glob("*/urdf/*.urdf"), *folder.glob("*/robots/*.urdf")], reverse=True)
     return {file.stem: file for file in files}
