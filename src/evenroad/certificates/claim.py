@@ -144,54 +144,54 @@ class Links:
     def pairs(self, untested: frozenset[frozenset[str]]) -> tuple[Pair, ...]:
         """Return the pairs of links in different frames, but those that are untested."""
         if untested not in self._pairs:
-            places = {name: self.tree.placement[name][0] for name in self.bodies}
-            self._pairs[untested] = tuple(_among(places, lambda name: self.node((name,)), untested))
+            frames = {name: self.tree.placement[name][0] for name in self.bodies}
+            self._pairs[untested] = tuple(_among(frames, lambda name: self.node((name,)), untested))
         return self._pairs[untested]
 
 
 def claim_of(links: Links, scene: Scene, claimed: Claimed) -> Claim:
     """Return what is to be proved of a robot in a scene; NotAvailable for bodies that no certificate speaks of."""
     held: dict[str, Elements] = {}
-    places = {name: links.tree.placement[name][0] for name in links.bodies}
+    frames = {name: links.tree.placement[name][0] for name in links.bodies}
     for each in scene.attached:
-        places[each.name], at = links.tree.placement[each.link]
+        frames[each.name], at = links.tree.placement[each.link]
         held[each.name] = elements_of(each.body, at, convex=each.name in claimed.convex)
-    nodes = {name: Node(places[name], [elements.native]) for name, elements in held.items()}
+    nodes = {name: Node(frames[name], [elements.native]) for name, elements in held.items()}
 
     def node(names: tuple[str, ...]) -> Node:
         if not held.keys() & names:
             return links.node(names)
         elements = [each for name in names for each in links.bodies.get(name, ()) or (held[name],)]
-        return Node(places[names[0]], [each.native for each in elements])
+        return Node(frames[names[0]], [each.native for each in elements])
 
-    around = _around(node, places, scene, claimed)
+    around = _around(node, frames, scene, claimed)
     untested = touching_of(links.urdf, scene, links.bodies, claimed)
     if not held:
         return Claim(links.tree, (*around, *links.pairs(untested)), claimed.keeps)
-    among = _among(places, lambda name: nodes.get(name) or links.node((name,)), untested)
+    among = _among(frames, lambda name: nodes.get(name) or links.node((name,)), untested)
     return Claim(links.tree, (*around, *among), claimed.keeps)
 
 
 def _among(
-    places: Mapping[str, int], node: Callable[[str], Node], untested: frozenset[frozenset[str]]
+    frames: Mapping[str, int], node: Callable[[str], Node], untested: frozenset[frozenset[str]]
 ) -> Iterator[Pair]:
-    """Yield the pairs of bodies in different frames, but those that are untested; `places` are their frames."""
-    names = list(places)
+    """Yield the pairs of bodies in different frames, but those that are untested; `frames` are the numbers of these."""
+    names = list(frames)
     for i, name in enumerate(names):
         for other in names[i + 1 :]:
-            if places[name] != places[other] and frozenset((name, other)) not in untested:
+            if frames[name] != frames[other] and frozenset((name, other)) not in untested:
                 yield Pair(node(name), node(other), 0.0, (name, other))
 
 
 def _around(
-    node: Callable[[tuple[str, ...]], Node], places: Mapping[str, int], scene: Scene, claimed: Claimed
+    node: Callable[[tuple[str, ...]], Node], frames: Mapping[str, int], scene: Scene, claimed: Claimed
 ) -> Iterator[Pair]:
     """Yield pairs of bodies and obstacles: bodies of one frame with the same allowances are one node."""
     allowed: dict[str, list[str]] = {}
     for body, obstacle in scene.allowed:
         allowed.setdefault(body, []).append(obstacle)
     groups: dict[tuple[int, frozenset[str], float], list[str]] = {}
-    for name, frame in places.items():
+    for name, frame in frames.items():
         key = frame, frozenset(allowed.get(name, ())), claimed.padding.get(name, 0.0)
         groups.setdefault(key, []).append(name)
     obstacles = {

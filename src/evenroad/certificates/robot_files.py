@@ -53,7 +53,7 @@ class ReadRobot:
         robot = world.robot
         held = frozenset(name for name, value in held_values(robot).items() if value != 0.0)
         bodied = tuple(dict.fromkeys(each.link for each in robot.capsules))
-        # A robot of an SRDF is asked for nothing more.
+        # Where an SRDF disables pairs, the rest of the robot does not count.
         key = held, None if self.disabled else (robot.pairs, robot.holds, bodied)
         if key not in self._files:
             self._files.setdefault(key, self._files_of(world, held, bodied))

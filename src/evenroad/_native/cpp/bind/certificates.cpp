@@ -16,15 +16,15 @@ using namespace certificates;
 /// Make elements of points, (p, 3), and the numbers of their corners, (n, c).
 void make_elements(Elements* self, nb::handle points, nb::handle corners, double radius, double disc, nb::handle axis,
                    bool is_box) {
-  const FloatRows places = float_rows(points, "points", 3);
+  const FloatRows rows = float_rows(points, "points", 3);
   const Array<const std::int64_t, 2> numbers(corners, "corners");
   const Floats along(axis, "axis");
   along.of_shape({3});
   require(numbers.size() > 0, "corners must be of one element or more");
-  require_below(numbers.span(), places.shape(0), "corners");
-  const auto [place, number, x] = std::tuple(places.span(), numbers.span(), along.span());
+  require_below(numbers.span(), rows.shape(0), "corners");
+  const auto [coordinates, number, x] = std::tuple(rows.span(), numbers.span(), along.span());
   const std::size_t count = numbers.shape(0);
-  new (self) Elements{{place.begin(), place.end()},
+  new (self) Elements{{coordinates.begin(), coordinates.end()},
                       {number.begin(), number.end()},
                       count,
                       radius,

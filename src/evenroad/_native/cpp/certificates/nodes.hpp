@@ -42,7 +42,7 @@ class Node {
   Vector centre{}, box[3]{};
   std::size_t elements = 0, corners = 0;
 
-  /// Return a half, 0 or 1, of a node of several elements.  Both are made once, by the thread that asks first.
+  /// Return a half, 0 or 1, of a node of several elements.  Both are made once, by the first thread that needs one.
   const Node& half(int side) const;
 
   /// Return the place of the node that is farthest along a functional of its frame.
