@@ -7,6 +7,7 @@ from evenroad import spaces as spaces
 from evenroad import testing as testing
 from evenroad.certificates.certify_path import certify_path as certify_path
 from evenroad.collision.arm_world import ArmWorld as ArmWorld
+from evenroad.driving import PolygonMap as PolygonMap
 from evenroad.geometry import Box as Box
 from evenroad.geometry import Capsule as Capsule
 from evenroad.geometry import Cylinder as Cylinder

@@ -6,8 +6,7 @@ map of nav2_bringup, ``tpcap_case1.csv`` a case of TPCAP; neither is in the repo
     python -m studies.benchmarks.drive --map depot.yaml -n 200
     python -m studies.benchmarks.drive --cases tpcap_case*.csv
 
-A case is one line: start x, y, angle, goal x, y, angle, the number of polygons, their numbers of corners, and all
-corners.  Its polygons are drawn on cells of 2 cm, each cell occupied that one of them touches.
+Polygons of a case are tested as they are.
 """
 
 from __future__ import annotations
@@ -20,18 +19,16 @@ from pathlib import Path
 import numpy as np
 
 import evenroad as er
-from evenroad.driving import CarWorld
+from evenroad.driving import CarWorld, load_parking_case
 from evenroad.planning import PlanResult
-from evenroad.world import MapFrame
 
 ROBOT = [(-0.45, -0.31), (0.45, -0.31), (0.45, 0.31), (-0.45, 0.31)]
 RADII = 0.4, 1.5, 4.0
 CAR = [(-0.929, -0.971), (3.76, -0.971), (3.76, 0.971), (-0.929, 0.971)]
 """The car of TPCAP around the middle of its rear axle."""
 TURNING = 2.8 / math.tan(0.75)
-CELL = 0.02
-MARGIN = 8.0
-"""Free space around start, goal and polygons of a case [m]."""
+STEP = 0.002
+"""Distance of poses along a path of a case that are looked at once more [m]."""
 
 
 def touches(world: CarWorld, result: PlanResult, step: float) -> int:
@@ -81,53 +78,17 @@ def on_map(path: Path, count: int, seconds: float, *, reverse: bool) -> None:
         report(f"{path.stem}, radius {radius:g}", results, times, bad)
 
 
-def case_world(path: Path) -> tuple[CarWorld, np.ndarray, np.ndarray]:
-    """Return the world of a parking case, its start and its goal."""
-    numbers = np.array([float(each) for each in path.read_text().split(",")])
-    start, goal, count = numbers[:3], numbers[3:6], int(numbers[6])
-    sizes = numbers[7 : 7 + count].astype(int)
-    corners = numbers[7 + count :].reshape(-1, 2)
-    ends = np.stack([start[:2], goal[:2]])
-    near = np.concatenate([ends, corners[(np.abs(corners - ends.mean(axis=0)) < 40.0).all(axis=1)]])
-    low, high = near.min(axis=0) - MARGIN, near.max(axis=0) + MARGIN
-    cols, rows = np.ceil((high - low) / CELL).astype(int)
-    occupied = np.zeros((rows, cols), dtype=bool)
-    first = 0
-    for size in sizes:
-        _draw(occupied, (corners[first : first + size] - low) / CELL)
-        first += size
-    frame = MapFrame(rows=int(rows), cols=int(cols), resolution=CELL, origin=(float(low[0]), float(low[1])), y_up=True)
-    return er.GridMap(occupied[::-1].copy(), frame).world(footprint=CAR, turning_radius=TURNING), start, goal
-
-
-def _draw(occupied: np.ndarray, polygon: np.ndarray) -> None:
-    """Occupy the cells that a polygon touches: those whose rows its sides cross, and what lies between."""
-    rows, cols = occupied.shape
-    for row in range(max(math.floor(polygon[:, 1].min()), 0), min(math.floor(polygon[:, 1].max()) + 1, rows)):
-        met = []
-        for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-            low, high = sorted((a, b), key=lambda corner: corner[1])
-            if low[1] > row + 1 or high[1] < row:
-                continue
-            rise = high[1] - low[1]
-            for y in (max(low[1], row), min(high[1], row + 1)):
-                met.append(low[0] + ((y - low[1]) / rise * (high[0] - low[0]) if rise else 0.0))
-            met += [a[0], b[0]] if rise == 0.0 else []
-        if met:
-            occupied[row, max(math.floor(min(met)), 0) : max(math.floor(max(met)) + 1, 0)] = True
-    assert cols > 0
-
-
 def on_cases(paths: list[Path], seconds: float) -> None:
     """Plan each parking case with eight seeds."""
     for path in paths:
-        world, start, goal = case_world(path)
+        case = load_parking_case(path)
+        world = case.map.world(footprint=CAR, turning_radius=TURNING)
         results, times, bad = [], [], 0
         for seed in range(8):
-            result, spent = timed(world, start, goal, seconds, seed)
+            result, spent = timed(world, case.start, case.goal, seconds, seed)
             results.append(result)
             times.append(spent)
-            bad += touches(world, result, 0.1 * CELL) if result.solved else 0
+            bad += touches(world, result, STEP) if result.solved else 0
         report(path.stem, results, times, bad)
 
 

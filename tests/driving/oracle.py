@@ -4,9 +4,12 @@ import math
 
 import numpy as np
 
+from evenroad.driving.car_space import CarSpace
+
 AROUND = 8
 """Number of cells outside of the map on each side: farther no footprint of the tests reaches."""
 BOX = [(-0.45, -0.31), (0.45, -0.31), (0.45, 0.31), (-0.45, 0.31)]
+HOOK = [(-0.4, -0.3), (0.8, -0.3), (0.8, 0.1), (0.2, 0.1), (0.1, 0.6), (-0.4, 0.5)]
 
 
 def placed(polygon, pose):
@@ -91,3 +94,20 @@ def driven(start, pieces):
         return np.array([position.real, position.imag, angle])
 
     return at, length
+
+
+def poses(world, n, seed):
+    return world.space.from_cube(np.random.default_rng(seed).random((n, 3)))
+
+
+def curve_of(world, a, b):
+    """The motion between two poses as a function, and the speed of the fastest point of the footprint."""
+    reach = world.footprint.reach
+    if isinstance(world.space, CarSpace):
+        pieces = world.space.pieces(a, b)
+        at, length = driven(a, pieces)
+        per_length = 1.0 + reach * max([abs(k) for k in pieces[:, 0] if np.isfinite(k)] or [0.0])
+        return at, length * max(per_length, reach)
+    turn = (b[2] - a[2] + np.pi) % (2 * np.pi) - np.pi
+    by = np.array([b[0] - a[0], b[1] - a[1], turn])
+    return lambda t: a + t * by, math.hypot(by[0], by[1]) + reach * abs(turn)

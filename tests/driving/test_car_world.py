@@ -8,13 +8,11 @@ import pytest
 
 import evenroad as er
 from evenroad.driving import CarWorld, Footprint
-from evenroad.driving.car_space import CarSpace
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.testing import WorldContract
 from evenroad.world import MapFrame
-from tests.driving.oracle import BOX, Oracle, driven
+from tests.driving.oracle import BOX, HOOK, Oracle, curve_of, poses
 
-HOOK = [(-0.4, -0.3), (0.8, -0.3), (0.8, 0.1), (0.2, 0.1), (0.1, 0.6), (-0.4, 0.5)]
 FAR = [(0.3, -0.2), (0.9, -0.35), (1.1, 0.2), (0.6, 0.5)]
 """A footprint that does not hold its reference point."""
 
@@ -50,10 +48,6 @@ class TestForwardsOnly(WorldContract):
     world = WORLDS["far on an image"]
 
 
-def poses(world, n, seed):
-    return world.space.from_cube(np.random.default_rng(seed).random((n, 3)))
-
-
 @EVERY
 def test_poses_are_free_where_every_cell_is_separate(name):
     world = WORLDS[name]
@@ -63,19 +57,6 @@ def test_poses_are_free_where_every_cell_is_separate(name):
     assert certain.sum() > 240
     assert 20 < (gaps < 0).sum() < 230
     np.testing.assert_array_equal(world.valid(q)[certain], gaps[certain] > 0)
-
-
-def curve_of(world, a, b):
-    """The motion between two poses as a function, and the speed of the fastest point of the footprint."""
-    reach = world.footprint.reach
-    if isinstance(world.space, CarSpace):
-        pieces = world.space.pieces(a, b)
-        at, length = driven(a, pieces)
-        per_length = 1.0 + reach * max([abs(k) for k in pieces[:, 0] if np.isfinite(k)] or [0.0])
-        return at, length * max(per_length, reach)
-    turn = (b[2] - a[2] + np.pi) % (2 * np.pi) - np.pi
-    by = np.array([b[0] - a[0], b[1] - a[1], turn])
-    return lambda t: a + t * by, math.hypot(by[0], by[1]) + reach * abs(turn)
 
 
 @EVERY

@@ -22,10 +22,33 @@ class Contact:
     part: int
     depth: float
 
+class Obstacles:
+    """Polygons on a grid of cells, by the corners of their borders, in cells from the corner of the map.
+
+    `sizes` are the numbers of corners of the borders, `polygons` the polygon of each.  What an odd number of a
+    polygon's borders surrounds is in it.  `occupied` are the cells that a polygon touches, `solid` those in one.
+    """
+
+    occupied: Bools
+    solid: Bools
+
+    def __init__(self, corners: Floats, sizes: Ints, polygons: Ints, rows: int, columns: int) -> None: ...
+
+class SideContact:
+    """A side of a polygon that a footprint overlaps, with which part, where, and how far, in map units."""
+
+    polygon: int
+    part: int
+    x: float
+    y: float
+    depth: float
+
 class Vehicle:
     """A footprint on a grid map: exact tests of its poses and motions; it never changes."""
 
     def __init__(self, occupied: Bools, frame: Floats, footprint: Footprint) -> None: ...
+    @staticmethod
+    def among(obstacles: Obstacles, inner: Bools, frame: Floats, footprint: Footprint) -> Vehicle: ...
     def poses_free(self, q: Floats) -> Bools: ...
     def lines_free(self, a: Floats, b: Floats) -> Bools: ...
     def curves_free(self, steering: Steering, a: Floats, b: Floats) -> Bools: ...
@@ -33,6 +56,7 @@ class Vehicle:
     def gaps(self, q: Floats) -> Floats: ...
     def are_apart(self, start: Floats, goal: Floats, slices: int, most: int) -> bool: ...
     def contact(self, q: Floats) -> Contact | None: ...
+    def side_contact(self, q: Floats) -> SideContact | None: ...
 
 class CarQuery:
     """A search for the path of a car between two free poses, round by round, and what it has checked so far.

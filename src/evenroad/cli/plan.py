@@ -139,7 +139,8 @@ class PlanCar(PlanOptions, CarTimes):
     planner = "evenroad.cli.plan_car:plan_car"
 
     world: Positional[Path]
-    """A map: a .png, .pgm or .bmp image, a ROS map_server .yaml, or a MovingAI .map."""
+    """A map: a .png, .pgm or .bmp image, a ROS map_server .yaml, or a MovingAI .map; or polygons: GeoJSON (.geojson,
+    .json), or a parking case of TPCAP (.csv)."""
     start: tuple[str, ...]
     """Where to start: x y angle in map units and radians."""
     goal: Repeatable[tuple[tuple[str, ...], ...]]

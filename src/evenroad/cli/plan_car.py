@@ -14,6 +14,7 @@ from evenroad.cli.plan import PlanCar
 from evenroad.cli.plan_parts import chosen_search, common_query, finish, made_of, output_files, solve_until_stopped
 from evenroad.driving.car_world import LARGEST_ANGLE
 from evenroad.driving.footprint import FootprintLike
+from evenroad.driving.polygon_map import load_any_map
 from evenroad.errors import InvalidValue, shown
 from evenroad.io import plan_record
 from evenroad.planning.planners.car import CarSearch
@@ -21,7 +22,6 @@ from evenroad.planning.planners.trees import default_planner
 from evenroad.planning.problem import Planner, Wanted
 from evenroad.planning.read_problem import read_problem
 from evenroad.planning.reading import Reading
-from evenroad.world import load_map
 from evenroad.world.gridmap.load import map_files
 
 LARGEST_TEXT = 20_000
@@ -34,7 +34,7 @@ def plan_car(plan: PlanCar) -> int:
     if how.n is not None or plan.improve:
         raise InvalidValue("a car is planned without points and --improve: only --time, --seed, --raw and --cusp-cost")
     start, goals = _pose("start", plan.start, plan.deg), [_pose("goal", goal, plan.deg) for goal in plan.goal]
-    gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free, rules=plan.rules)
+    gridmap = load_any_map(plan.world, unknown_is_free=plan.unknown_is_free, rules=plan.rules)
     world = gridmap.world(
         footprint=_footprint(plan.footprint),
         turning_radius=plan.turning_radius,

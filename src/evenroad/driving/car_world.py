@@ -13,8 +13,10 @@ from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._checks import require_positive
 from evenroad._native.drive import Vehicle
+from evenroad.driving.among_polygons import looser_world, vehicle_among
 from evenroad.driving.car_space import CarSpace
 from evenroad.driving.footprint import Footprint
+from evenroad.driving.polygon_map import PolygonMap
 from evenroad.errors import InvalidValue
 from evenroad.space import Circle, Product
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -40,12 +42,14 @@ _LEAST_DEPTH = 1e-12
 @explains_calls
 @dataclass(frozen=True, eq=False, repr=False)
 class CarWorld(OneOrMany):
-    """A footprint on one map: what `GridMap.world` returns with `footprint`.
+    """A footprint on one map: what `GridMap.world` returns with `footprint`, and `PolygonMap.world`.
 
     Obstacles are the closed squares of the occupied cells and everything outside of the map; the footprint is open, so
-    touching is free.  A pose is (x, y, angle), an angle of 0 pointing along x.  A motion is the shortest curve of the
-    space: of Reeds and Shepp, or of Dubins without `reverse`; with a `turning_radius` of 0 the robot turns on the
-    spot.  All that the footprint sweeps is tested, without any step length.  With `holonomic` a robot moves straight in
+    touching is free.  With `polygons` these are the obstacles, and the cells those that they touch.
+
+    A pose is (x, y, angle), an angle of 0 pointing along x.  A motion is the shortest curve of the space: of Reeds and
+    Shepp, or of Dubins without `reverse`; with a `turning_radius` of 0 the robot turns on the spot.  All that the
+    footprint sweeps is tested, without any step length.  With `holonomic` a robot moves straight in
     any direction while it turns evenly.
 
     InvalidValue for a footprint or a radius that is larger than the map, and for numbers that are none.
@@ -57,6 +61,7 @@ class CarWorld(OneOrMany):
     reverse: bool = True
     holonomic: bool = False
     clearance: float = 0.0
+    polygons: PolygonMap | None = None
     space: CarSpace | Product = field(init=False, repr=False)
     vehicle: Vehicle = field(init=False, repr=False)
 
@@ -83,13 +88,13 @@ class CarWorld(OneOrMany):
             if self.holonomic
             else CarSpace(self.grid.space, radius, self.reverse, self.footprint.reach)
         )
-        vehicle = _vehicle(self.grid, self.footprint.grown(clearance))
-        set_fields(self, turning_radius=radius, clearance=clearance, space=space, vehicle=vehicle)
+        set_fields(self, turning_radius=radius, clearance=clearance, space=space)
+        set_fields(self, vehicle=self._vehicle(self.footprint.grown(clearance)))
 
     def __reduce__(self) -> tuple[type[CarWorld], tuple[object, ...]]:
         """Return what a copy is made of, here or in another process: it makes its own tables."""
-        made_of = (self.grid, self.footprint, self.turning_radius, self.reverse, self.holonomic, self.clearance)
-        return type(self), made_of
+        car = (self.footprint, self.turning_radius, self.reverse, self.holonomic, self.clearance)
+        return type(self), (self.grid, *car, self.polygons)
 
     @property
     def proof(self) -> str:
@@ -148,15 +153,17 @@ class CarWorld(OneOrMany):
     @cached_property
     def _bare(self) -> Vehicle:
         """The footprint without its clearance."""
-        return self.vehicle if self.clearance == 0.0 else _vehicle(self.grid, self.footprint)
+        return self.vehicle if self.clearance == 0.0 else self._vehicle(self.footprint)
 
     def explain(self, q: Floats) -> str:
         """Return, in words, which part of the footprint touches which cell at a pose, (3,), that is not free."""
         pose = as_batch("q", self._row(q)[np.newaxis], 3)[0]
         near = f", or comes nearer than the clearance of {self.clearance:g}" if self.clearance > 0.0 else ""
         corners = np.concatenate([_placed(pose[np.newaxis], each) for each in self._corners])
-        if not (inside := self.grid.contains(corners)).all():
+        if not (inside := self._on_map(corners)).all():
             return f"its {self._side(self._corners[np.argmin(inside)])} reaches beyond the map{near}"
+        if self.polygons is not None:
+            return self._side_touched(pose, self.polygons.names) + near
         contact = self.vehicle.contact(pose)
         if contact is None:
             return "nothing touches"
@@ -168,6 +175,23 @@ class CarWorld(OneOrMany):
         by = f"by {max(contact.depth * self.grid.resolution, _LEAST_DEPTH):.3g}"
         side = self._side(self._seen_from(pose, cell))
         return f"its {side} touches the {kind} at ({cell[0]:.6g}, {cell[1]:.6g}) {by}{near}"
+
+    def _on_map(self, points: Floats) -> Bools:
+        if self.polygons is None:
+            return self.grid.contains(points)
+        low, high = self.polygons.bounds
+        return np.asarray(((points >= low) & (points <= high)).all(axis=1))
+
+    def _side_touched(self, pose: Floats, names: tuple[str, ...]) -> str:
+        """Return in words where the footprint touches a polygon at a pose."""
+        contact = self.vehicle.side_contact(pose)
+        if contact is None:
+            return "nothing touches"
+        name = names[contact.polygon] if 0 <= contact.polygon < len(names) else "the border of the map"
+        if contact.depth == 0.0:
+            return f"it lies inside of {name}"
+        side = self._side(self._seen_from(pose, np.array([contact.x, contact.y])))
+        return f"its {side} touches {name} at ({contact.x:.6g}, {contact.y:.6g}) by {contact.depth:.3g}"
 
     def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
         """Return the proof that no path leads from a start, (3,), to any goal, (g, 3); None says nothing.
@@ -182,7 +206,7 @@ class CarWorld(OneOrMany):
             if self._inscribed.apart(points[0], points[1:], quickly=quickly) is not None:
                 message = (
                     "proved: there is no path; the largest disk inside of the footprint, of radius"
-                    f" {self._inscribed.radius:.3g}, cannot get from start to goal either"
+                    f" {self._footprint.inscribed[1]:.3g}, cannot get from start to goal either"
                 )
                 return Apart(message, proved=True)
         if quickly or not self.valid(poses[:1])[0]:
@@ -198,7 +222,9 @@ class CarWorld(OneOrMany):
 
     @cached_property
     def _inscribed(self) -> DiskWorld:
-        return self.grid.world(self._footprint.inscribed[1])
+        """The largest disk inside of the footprint; among polygons, one that is free wherever that is."""
+        radius = self._footprint.inscribed[1]
+        return self.grid.world(radius) if self.polygons is None else looser_world(self.polygons, radius)
 
     @cached_property
     def _footprint(self) -> Footprint:
@@ -211,7 +237,20 @@ class CarWorld(OneOrMany):
         digest = hashlib.sha256(f"car {car!r} {self.grid.frame!r} {list(map(len, self.footprint.parts))}".encode())
         for part in (*self.footprint.parts, self.grid.occupied):
             digest.update(part.tobytes())
+        if self.polygons is not None:
+            digest.update(self.polygons.fingerprint().encode())
         return digest.hexdigest()
+
+    def _vehicle(self, footprint: Footprint) -> Vehicle:
+        if self.polygons is not None:
+            return vehicle_among(self.polygons, footprint)
+        frame, native = self.grid.frame, footprint.native(self.grid.resolution)
+        if not frame.y_up:
+            return Vehicle(self.grid.occupied, frame.coefficients(), native)
+        # Rows along y, so that angles turn in the kernel as they do on the map.
+        cosine, sine = math.cos(frame.yaw), math.sin(frame.yaw)
+        coefficients = np.array([*frame.origin, cosine, sine, -sine, cosine, frame.resolution, 0.0])
+        return Vehicle(np.ascontiguousarray(self.grid.occupied[::-1]), coefficients, native)
 
     @property
     def _corners(self) -> Floats:
@@ -243,13 +282,3 @@ def _placed(poses: Floats, point: Floats) -> Floats:
     by = np.column_stack([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]])
     placed: Floats = poses[:, :2] + by
     return placed
-
-
-def _vehicle(grid: GridMap, footprint: Footprint) -> Vehicle:
-    frame = grid.frame
-    if not frame.y_up:
-        return Vehicle(grid.occupied, frame.coefficients(), footprint.native(grid.resolution))
-    # Rows along y, so that angles turn in the kernel as they do on the map.
-    cosine, sine = math.cos(frame.yaw), math.sin(frame.yaw)
-    coefficients = np.array([*frame.origin, cosine, sine, -sine, cosine, frame.resolution, 0.0])
-    return Vehicle(np.ascontiguousarray(grid.occupied[::-1]), coefficients, footprint.native(grid.resolution))

@@ -150,8 +150,11 @@ class Footprint:
         turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
         return [polygon @ turn + np.array([x, y]) for polygon in polygons]
 
-    def native(self, cell: float) -> NativeFootprint:
-        """Return it as the native kernel takes it, in cells of a side in map units."""
+    def native(self, cell: float, less: float = 0.0) -> NativeFootprint:
+        """Return it as the native kernel takes it, in cells of a side in map units.
+
+        The disks inside are smaller by `less` cells.
+        """
         parts = [part / cell for part in self.parts]
         corners = [_shrunk(part) for part in parts]
         radius, cover = _covering(parts)
@@ -161,7 +164,7 @@ class Footprint:
             np.array([len(part) for part in corners], dtype=np.int64),
             cover,
             np.ascontiguousarray(centres / cell),
-            np.array([radius + SHRUNK, max(inner / cell - 2.0 * SHRUNK, 1e-150)]),
+            np.array([radius + SHRUNK, max(inner / cell - less - 2.0 * SHRUNK, 1e-150)]),
         )
 
 

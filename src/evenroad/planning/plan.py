@@ -32,13 +32,14 @@ from evenroad.space.protocol import is_directed
 from evenroad.world import World
 
 if TYPE_CHECKING:
+    from evenroad.driving import PolygonMap
     from evenroad.world import GridMap
 
 _PLAIN = Reading()
 
 
 def plan(
-    world: World | GridMap | Scene | PathLike,
+    world: World | GridMap | PolygonMap | Scene | PathLike,
     start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     planner: Planner | Roadmap | PointSet | str | os.PathLike[str] | None = None,
@@ -58,9 +59,9 @@ def plan(
 
     Parameters
     ----------
-    world : World, GridMap, Scene, str or path-like
-        The world to plan in.  A map, or its file, goes with ``radius=``; a scene, its file or the name of a shipped
-        one, with ``robot=``.
+    world : World, GridMap, PolygonMap, Scene, str or path-like
+        The world to plan in.  A map, or its file, goes with ``radius=`` or ``footprint=``; a scene, its file or the
+        name of a shipped one, with ``robot=``.
     start : array_like, shape (dim,), str or mapping
         A configuration in the units of the world's space.  For an arm also joint -> value, or a text: the name of a
         state, ``0,-1.57,...`` or ``name=value``.  A value may exceed its joint's limits by 1e-5, the rounding of five

@@ -31,6 +31,7 @@ from evenroad.scenes.states import as_configuration, at_states
 from evenroad.world import World
 
 if TYPE_CHECKING:
+    from evenroad.driving import PolygonMap
     from evenroad.world import GridMap
 
 _ANY_PATH: Wanted = {}
@@ -48,7 +49,7 @@ OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 
 
 def read_problem(
-    world: World | GridMap | Scene | PathLike,
+    world: World | GridMap | PolygonMap | Scene | PathLike,
     start: ConfigurationLike,
     goal: Goal | Sequence[Goal],
     reading: Reading,
@@ -65,11 +66,11 @@ def read_problem(
         # Names and suffixes of maps and scenes are the same, so the radius or the footprint decides.
         if "radius" in of_world or "footprint" in of_world:
             # Imported late: a plan of an arm reads no image.
-            from evenroad.world import load_map
+            from evenroad.driving.polygon_map import load_any_map
 
             reading_of_map = {name: of_world.pop(name) for name in ("unknown_is_free", "rules") if name in of_world}
             with off_the_clock():
-                world = load_map(world, **reading_of_map)
+                world = load_any_map(world, **reading_of_map)
         elif "robot" not in of_world:
             raise InvalidValue(
                 f"{os.fspath(world)!r} needs radius=, of a disk on this map, or robot=, the arm in this scene;"
@@ -108,13 +109,14 @@ def is_world(world: object) -> TypeGuard[World]:
     return hasattr(world, "motion_valid")
 
 
-def _is_map(world: object) -> TypeGuard[GridMap]:
+def _is_map(world: object) -> TypeGuard[GridMap | PolygonMap]:
     if isinstance(world, Scene | ArmWorld | str | os.PathLike):
         return False
     # Imported late: a plan of an arm has no map.
+    from evenroad.driving import PolygonMap
     from evenroad.world import GridMap
 
-    return isinstance(world, GridMap)
+    return isinstance(world, GridMap | PolygonMap)
 
 
 def _require_known(given: Mapping[str, object], known: Sequence[str], what: str) -> None:

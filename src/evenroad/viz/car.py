@@ -7,6 +7,7 @@ from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
 from evenroad.driving.car_world import CarWorld
+from evenroad.driving.polygon_map import PolygonMap
 from evenroad.planning.result import PlanResult, Status
 from evenroad.viz import style
 from evenroad.viz.plan import LEAST_WIDTH, LONG_SIDE, kinds_of, paint_cells, shown_of
@@ -22,7 +23,12 @@ def draw_car_plan(result: PlanResult, world: CarWorld) -> Image.Image:
     """Return a picture of a car's plan on its map, in map units; a start or goal in collision has a red outline."""
     low, high = shown_of(world.grid, result, world.footprint.reach)
     view = View(low, high, LONG_SIDE / float((high - low).max()), up=world.grid.frame.y_up)
-    paint_cells(view, world.grid, kinds_of(world.grid))
+    kinds = kinds_of(world.grid)
+    if world.polygons is None:
+        paint_cells(view, world.grid, kinds)
+    else:
+        paint_cells(view, world.grid, np.zeros_like(kinds))
+        _draw_polygons(view, world.polygons)
     entries: list[Entry] = []
     if result.path is not None:
         _draw_swept(view, result.resample(max(0.5 * world.grid.resolution, 1.0 / view.shown_scale)), world)
@@ -40,6 +46,13 @@ def draw_car_plan(result: PlanResult, world: CarWorld) -> Image.Image:
     entries += [("start", style.START, "white"), ("goal", style.GOAL, "white")]
     above = "" if view.up else "y points down"
     return Sheet.of_view(view, LEAST_WIDTH, f"{result.status}: {result.message}", above, ("x", "y"), entries).image
+
+
+def _draw_polygons(view: View, polygon_map: PolygonMap) -> None:
+    """Draw polygons, their holes, and walls of no thickness."""
+    for polygon in polygon_map.polygons:
+        for number, border in enumerate(polygon):
+            view.polygon(border, style.FREE if number else style.OBSTACLE, style.OBSTACLE)
 
 
 def _draw_swept(view: View, poses: Floats, world: CarWorld) -> None:

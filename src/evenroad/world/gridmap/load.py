@@ -23,6 +23,8 @@ from evenroad.world.gridmap.movingai import load_movingai_map
 MAPS = Path(__file__).parent / "maps"
 SHIPPED = ("maze1.png", "maze2.png", "maze3.png", "office.yaml")
 """Maps that ship with evenroad, by name."""
+OF_POLYGONS = (".geojson", ".csv")
+"""Suffixes of maps of polygons, which are read elsewhere."""
 
 
 @explains_calls
@@ -79,6 +81,8 @@ def load_map(
         return load_image(file)
     if suffix == movingai.SUFFIX:
         return load_movingai_map(file)
+    if suffix in OF_POLYGONS:
+        raise UnknownName(f"{file} is no map of cells; polygons are read by er.PolygonMap, and go with footprint=")
     known = (*images.SUFFIXES, *map_server.SUFFIXES, movingai.SUFFIX)
     raise UnknownName.among(f"kind of map file {os.fspath(path)!r}: suffix", suffix, known)
 

@@ -13,6 +13,10 @@ namespace {
 
 /// Numbers of rows and columns have 32 bits.
 constexpr std::size_t MOST_CELLS = 1'000'000'000;
+/// Largest number of cells that tell which polygons are near.
+constexpr std::int64_t MOST_POLYGON_CELLS = 20'000'000;
+/// Largest coordinate of a corner of a polygon [cells].
+constexpr double FARTHEST_CORNER = 1e7;
 /// Farther than this from the reference point no corner is [cells].
 constexpr double LARGEST_FOOTPRINT = 1e5;
 /// Largest number of poses along a path.
@@ -97,6 +101,72 @@ void make_vehicle(drive::Vehicle* self, nb::handle occupied, nb::handle frame, c
   require(f[6] > 0.0, "the side of a cell must be > 0");
   without_gil(
       [&] { new (self) drive::Vehicle(cells.matrix(), {f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]}, footprint); });
+}
+
+/// Read corners of borders, one after the other, in cells of the map.
+std::vector<drive::Border> borders_of(nb::handle corners, nb::handle sizes, nb::handle polygons) {
+  const FloatRows all = float_rows(corners, "corners", 2);
+  require_within(all.span(), -FARTHEST_CORNER, FARTHEST_CORNER, "corners");
+  const Array<const std::int64_t, 1> counts(sizes, "sizes"), of(polygons, "polygons");
+  of.of_shape({counts.size()});
+  require_below(of.span(), MOST_CELLS, "polygons");
+  std::vector<drive::Border> borders;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < counts.size(); i++) {
+    const std::int64_t size = counts.span()[i];
+    require(size >= 2 && static_cast<std::uint64_t>(size) <= all.shape(0) - next,
+            "sizes must be numbers of corners >= 2 that add up to the number of corners");
+    drive::Border border{of.span()[i], {}};
+    for (const std::size_t end = next + static_cast<std::size_t>(size); next < end; next++) {
+      // A ring lies around the map.
+      border.corners.push_back({all.matrix()(next, 0) + 1.0, all.matrix()(next, 1) + 1.0});
+    }
+    borders.push_back(std::move(border));
+  }
+  require(next == all.shape(0), "sizes must add up to the number of corners");
+  return borders;
+}
+
+void make_obstacles(drive::Obstacles* self, nb::handle corners, nb::handle sizes, nb::handle polygons,
+                    std::int64_t rows, std::int64_t columns) {
+  require(rows >= 1 && columns >= 1 && rows <= MOST_POLYGON_CELLS && columns <= MOST_POLYGON_CELLS / rows,
+          "rows and columns must be >= 1, and their product at most 20 million");
+  const std::vector<drive::Border> borders = borders_of(corners, sizes, polygons);
+  without_gil([&] { new (self) drive::Obstacles(borders, rows + 2, columns + 2); });
+}
+
+/// Cells of the map, without those around it.
+nb::object map_cells(const drive::Obstacles& obstacles, const std::vector<std::uint8_t>& padded) {
+  const std::int64_t rows = obstacles.rows() - 2, columns = obstacles.columns() - 2;
+  std::vector<std::uint8_t> cells;
+  for (std::int64_t row = 1; row <= rows; row++) {
+    const auto first = padded.begin() + row * obstacles.columns() + 1;
+    cells.insert(cells.end(), first, first + columns);
+  }
+  return as_bools(std::move(cells), {static_cast<std::size_t>(rows), static_cast<std::size_t>(columns)});
+}
+
+/// A vehicle among polygons; `inner` are the cells that are occupied for the disks inside of it.
+drive::Vehicle* vehicle_among(const drive::Obstacles& obstacles, nb::handle inner, nb::handle frame,
+                              const drive::Footprint& footprint) {
+  const Array<const bool, 2> cells(inner, "inner");
+  const auto rows = static_cast<std::size_t>(obstacles.rows() - 2);
+  const auto columns = static_cast<std::size_t>(obstacles.columns() - 2);
+  cells.of_shape({rows, columns});
+  const Floats of(frame, "frame");
+  of.of_shape({3});
+  const double* f = of.data();
+  require(f[2] > 0.0, "the side of a cell must be > 0");
+  return without_gil([&] {
+    const std::unique_ptr<bool[]> occupied(new bool[rows * columns]);
+    for (std::size_t row = 0; row < rows; row++) {
+      for (std::size_t column = 0; column < columns; column++) {
+        occupied[row * columns + column] = obstacles.occupied()[(row + 1) * (columns + 2) + column + 1] != 0;
+      }
+    }
+    return new drive::Vehicle({occupied.get(), rows, columns}, cells.matrix(),
+                              {f[0], f[1], 1.0, 0.0, 0.0, 1.0, f[2], 0.0}, footprint, obstacles);
+  });
 }
 
 void make_steering(drive::Steering* self, double radius, double spot, bool is_reversing, double cusp) {
@@ -220,6 +290,20 @@ std::optional<drive::Contact> contact(const drive::Vehicle& vehicle, nb::handle 
   });
 }
 
+/// Where among polygons a pose touches a side; in map units.
+std::optional<drive::SideContact> side_contact(const drive::Vehicle& vehicle, nb::handle q) {
+  const drive::Pose pose = vehicle.to_cells(pose_of(q, "q"));
+  require(vehicle.obstacles() != nullptr, "only a vehicle among polygons touches their sides");
+  return without_gil([&] {
+    std::optional<drive::SideContact> found = drive::Checks(vehicle).side_contact(pose);
+    if (found) {
+      const drive::Pose at = vehicle.to_map({found->at.x, found->at.y, 0.0});
+      found->at = {at.x, at.y}, found->depth *= vehicle.scale();
+    }
+    return found;
+  });
+}
+
 nb::object curve_lengths(const drive::Steering& steering, nb::handle a, nb::handle b) {
   const Pairs pairs(a, b);
   std::vector<double> lengths;
@@ -321,15 +405,29 @@ void add_drive(nb::module_& module) {
       .def_ro("column", &drive::Contact::column)
       .def_ro("part", &drive::Contact::part)
       .def_ro("depth", &drive::Contact::depth);
+  nb::class_<drive::Obstacles>(part, "Obstacles", "Polygons on a grid map, tested as they are.")
+      .def("__init__", &make_obstacles, "corners"_a.none(), "sizes"_a.none(), "polygons"_a.none(), "rows"_a,
+           "columns"_a)
+      .def_prop_ro("occupied", [](const drive::Obstacles& self) { return map_cells(self, self.occupied()); })
+      .def_prop_ro("solid", [](const drive::Obstacles& self) { return map_cells(self, self.solid()); });
+  nb::class_<drive::SideContact>(part, "SideContact", "A side of a polygon that a footprint overlaps, in map units.")
+      .def_ro("polygon", &drive::SideContact::polygon)
+      .def_ro("part", &drive::SideContact::part)
+      .def_prop_ro("x", [](const drive::SideContact& self) { return self.at.x; })
+      .def_prop_ro("y", [](const drive::SideContact& self) { return self.at.y; })
+      .def_ro("depth", &drive::SideContact::depth);
   nb::class_<drive::Vehicle>(part, "Vehicle", "A footprint on a grid map.")
       .def("__init__", &make_vehicle, "occupied"_a.none(), "frame"_a.none(), "footprint"_a)
+      .def_static("among", &vehicle_among, "obstacles"_a, "inner"_a.none(), "frame"_a.none(), "footprint"_a,
+                  nb::rv_policy::take_ownership, nb::keep_alive<0, 1>())
       .def("poses_free", &poses_free, "q"_a.none())
       .def("lines_free", &lines_free, "a"_a.none(), "b"_a.none())
       .def("curves_free", &curves_free, "steering"_a, "a"_a.none(), "b"_a.none())
       .def("pieces_free", &pieces_free, "steering"_a, "start"_a.none(), "pieces"_a.none())
       .def("gaps", &gaps, "q"_a.none())
       .def("are_apart", &are_apart, "start"_a.none(), "goal"_a.none(), "slices"_a, "most"_a)
-      .def("contact", &contact, "q"_a.none());
+      .def("contact", &contact, "q"_a.none())
+      .def("side_contact", &side_contact, "q"_a.none());
   nb::class_<drive::CarQuery>(part, "CarQuery", "A search for the path of a car between two free poses.")
       .def("__init__", &make_query, "vehicle"_a, "steering"_a, "start"_a.none(), "goal"_a.none(), "variant"_a,
            nb::keep_alive<1, 2>())

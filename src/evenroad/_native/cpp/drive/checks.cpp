@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "drive/convex.hpp"
+
 namespace evenroad::drive {
 
 namespace {
@@ -42,36 +44,6 @@ bool meets_turning(Vec a, Vec b, double sense, Vec p, Vec q) {
   return false;
 }
 
-double distance_to_segment(Vec point, Vec p, Vec q) {
-  const Vec d = q - p;
-  const double t = std::clamp(dot(point - p, d) / dot(d, d), 0.0, 1.0);
-  return norm(point - (p + t * d));
-}
-
-/// Return the distance of two convex polygons that do not overlap.
-double distance_of(std::span<const Vec> a, std::span<const Vec> b) {
-  double least = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < a.size(); i++) {
-    for (std::size_t j = 0; j < b.size(); j++) {
-      least = std::min(least, distance_to_segment(a[i], b[j], b[(j + 1) % b.size()]));
-      least = std::min(least, distance_to_segment(b[j], a[i], a[(i + 1) % a.size()]));
-    }
-  }
-  return least;
-}
-
-/// Return how far a convex polygon reaches beyond the sides of another: 0 or less where a side separates them.
-double overlap_beyond_sides(std::span<const Vec> of, std::span<const Vec> other) {
-  double least = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < of.size(); i++) {
-    const Vec side = of[(i + 1) % of.size()] - of[i], out = (1.0 / norm(side)) * Vec{side.y, -side.x};
-    double inside = -std::numeric_limits<double>::max();
-    for (const Vec& corner : other) inside = std::max(inside, dot(of[i] - corner, out));
-    least = std::min(least, inside);
-  }
-  return least;
-}
-
 }  // namespace
 
 Checks::Checks(const Vehicle& vehicle)
@@ -98,6 +70,7 @@ bool Checks::is_free(const Pose& pose) {
   for (const std::vector<Vec>& part : footprint.parts) {
     std::ranges::transform(part, corners.begin(), placed);
     if (meets({corners.data(), part.size()}, 0.0)) return false;
+    if (vehicle_.obstacles() != nullptr && vehicle_.obstacles()->hold(corners[0])) return false;
   }
   return true;
 }
@@ -170,11 +143,13 @@ Checks::Answer Checks::sweep(const Motion& motion, const Interval& interval) {
 
 bool Checks::meets(std::span<const Vec> polygon, double grow) {
   const world::Occupancy& occupancy = vehicle_.occupancy();
-  return !covered_.cover(polygon, grow, occupancy) || covered_.meets(occupancy);
+  if (!covered_.cover(polygon, grow, occupancy)) return true;
+  const Obstacles* obstacles = vehicle_.obstacles();
+  return obstacles == nullptr ? covered_.meets(occupancy) : obstacles->meet(covered_, occupancy, polygon, grow);
 }
 
 /// Say whether a part that turns about a centre, its corners from the first to the last, touches one of the covered
-/// cells; none does where it begins.
+/// cells, or sides in them; it touches none where it begins.
 bool Checks::turns_into(std::span<const Vec> first, std::span<const Vec> last, const Motion& motion) {
   const double sense = motion.turn < 0.0 ? -1.0 : 1.0;
   const Vec centre = motion.centre;
@@ -183,18 +158,28 @@ bool Checks::turns_into(std::span<const Vec> first, std::span<const Vec> last, c
   const Vec from = first[farthest] - centre, to = last[farthest] - centre;
   const double square = dot(from, from);
   const double cosine = dot(from, to) / square, sine = cross(from, to) / square;
-  return covered_.any_occupied(vehicle_.occupancy(), [&](std::int64_t row, std::int64_t column) {
-    Square square_of = square_at(row, column);
-    for (Vec& corner : square_of) corner = corner - centre;
+  // Say whether the part meets a segment, the first corner of which stands for all of an outline.
+  const auto meets_segment = [&](Vec from_centre, Vec next_from_centre) {
+    // Seen from the part, the corner turns back.
+    const Vec& corner = from_centre;
+    const Vec back{cosine * corner.x + sine * corner.y, cosine * corner.y - sine * corner.x};
     for (std::size_t i = 0; i < first.size(); i++) {
       const Vec a = first[i] - centre, b = last[i] - centre, next = first[(i + 1) % first.size()] - centre;
-      for (std::size_t j = 0; j < 4; j++) {
-        const Vec corner = square_of[j];
-        if (meets_turning(a, b, sense, corner, square_of[(j + 1) % 4])) return true;
-        // Seen from the part, the square turns back.
-        const Vec back{cosine * corner.x + sine * corner.y, cosine * corner.y - sine * corner.x};
-        if (meets_turning(corner, back, -sense, a, next)) return true;
-      }
+      if (meets_turning(a, b, sense, corner, next_from_centre)) return true;
+      if (meets_turning(corner, back, -sense, a, next)) return true;
+    }
+    return false;
+  };
+  if (const Obstacles* obstacles = vehicle_.obstacles(); obstacles != nullptr) {
+    return obstacles->any_side(covered_, vehicle_.occupancy(), [&](const Side& side) {
+      const Vec p = side.from - centre, q = side.to - centre;
+      return meets_segment(p, q) || meets_segment(q, p);
+    });
+  }
+  return covered_.any_occupied(vehicle_.occupancy(), [&](std::int64_t row, std::int64_t column) {
+    const Square square = square_at(row, column);
+    for (std::size_t j = 0; j < 4; j++) {
+      if (meets_segment(square[j] - centre, square[(j + 1) % 4] - centre)) return true;
     }
     return false;
   });
@@ -219,10 +204,17 @@ double Checks::gap(const Pose& pose) {
     for (double grow = 4.0; least > 0.0; grow *= 2.0) {
       const double within = std::min(grow, std::min(least, bound - 1.0));
       if (!covered_.cover(polygon, within, occupancy)) break;
-      covered_.any_occupied(occupancy, [&](std::int64_t row, std::int64_t column) {
-        least = std::min(least, distance_of(polygon, square_at(row, column)));
-        return false;
-      });
+      if (const Obstacles* obstacles = vehicle_.obstacles(); obstacles != nullptr) {
+        obstacles->any_side(covered_, occupancy, [&](const Side& side) {
+          least = std::min(least, distance_of(polygon, std::array<Vec, 2>{side.from, side.to}));
+          return false;
+        });
+      } else {
+        covered_.any_occupied(occupancy, [&](std::int64_t row, std::int64_t column) {
+          least = std::min(least, distance_of(polygon, square_at(row, column)));
+          return false;
+        });
+      }
       if (least <= within) break;
       clock_.look();
     }
@@ -241,10 +233,33 @@ std::optional<Contact> Checks::contact(const Pose& pose) {
     if (!covered_.cover(polygon, 0.0, vehicle_.occupancy())) continue;
     covered_.any_occupied(vehicle_.occupancy(), [&](std::int64_t row, std::int64_t column) {
       const Square square = square_at(row, column);
-      const double depth = std::min(overlap_beyond_sides(polygon, square), overlap_beyond_sides(square, polygon));
+      const double depth = overlap_of(polygon, square);
       if (depth >= 0.0 && (!deepest || depth > deepest->depth)) deepest = Contact{row, column, part, depth};
       return false;
     });
+  }
+  return deepest;
+}
+
+std::optional<SideContact> Checks::side_contact(const Pose& pose) {
+  const Placed placed(pose);
+  const Obstacles* obstacles = vehicle_.obstacles();
+  std::optional<SideContact> deepest;
+  Corners corners;
+  const std::vector<std::vector<Vec>>& parts = vehicle_.footprint().parts;
+  for (std::size_t part = 0; part < parts.size(); part++) {
+    std::ranges::transform(parts[part], corners.begin(), placed);
+    const std::span<const Vec> polygon{corners.data(), parts[part].size()};
+    if (!covered_.cover(polygon, 0.0, vehicle_.occupancy())) continue;
+    obstacles->any_side(covered_, vehicle_.occupancy(), [&](const Side& side) {
+      const double depth = overlap_of(polygon, std::array<Vec, 2>{side.from, side.to});
+      if (depth < 0.0 || (deepest && depth <= deepest->depth)) return false;
+      deepest = SideContact{side.polygon, part, middle_within(polygon, side.from, side.to), depth};
+      return false;
+    });
+    if (const std::int64_t holder = obstacles->holder(polygon[0]); !deepest && holder != OUTSIDE) {
+      deepest = SideContact{holder, part, polygon[0], 0.0};
+    }
   }
   return deepest;
 }

@@ -43,6 +43,8 @@ class Checks {
   /// Return the distance to the nearest occupied cell in cells, 0 where one is met.
   double gap(const Pose& pose);
   std::optional<Contact> contact(const Pose& pose);
+  /// The same among polygons, of which one may hold all of the footprint.
+  std::optional<SideContact> side_contact(const Pose& pose);
 
   const Vehicle& vehicle() const { return vehicle_; }
   Counts counts;

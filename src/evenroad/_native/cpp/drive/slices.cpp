@@ -70,7 +70,8 @@ Slices::Slices(const Vehicle& vehicle, std::int64_t count)
       rows_(vehicle.rows()),
       columns_(vehicle.columns()),
       words_((columns_ + 63) / 64),
-      shut_(count) {}
+      shut_(count),
+      always_(count) {}
 
 /// The disk inside of the footprint is on the map wherever that is free, so its centre stands for a pose.
 Slices::Box Slices::box_of(const Pose& pose) const {
@@ -81,8 +82,29 @@ Slices::Box Slices::box_of(const Pose& pose) const {
 }
 
 bool Slices::is_open(const Box& box) {
+  if (vehicle_.obstacles() != nullptr) return !meets_polygons(box);
   if (shut_[box.slice].empty()) shut(box.slice);
   return (shut_[box.slice][box.row * words_ + (box.column >> 6)] >> (box.column & 63) & 1) == 0;
+}
+
+/// Say whether a part always meets a polygon where its pose lies in a box.
+bool Slices::meets_polygons(const Box& box) {
+  std::vector<std::vector<Vec>>& always = always_[box.slice];
+  if (always.empty()) {
+    const double width = 2.0 * PI / static_cast<double>(count_);
+    for (std::vector<Vec> part : vehicle_.footprint().parts) {
+      for (Vec& corner : part) corner = corner - centre_;
+      always.push_back(always_covered(part, static_cast<double>(box.slice) * width, width));
+    }
+  }
+  const Vec middle{static_cast<double>(box.column) + 0.5, static_cast<double>(box.row) + 0.5};
+  return std::ranges::any_of(always, [&](std::vector<Vec> polygon) {
+    if (polygon.empty()) return false;
+    for (Vec& corner : polygon) corner = corner + middle;
+    return !covered_.cover(polygon, 0.0, vehicle_.occupancy()) ||
+           vehicle_.obstacles()->meet(covered_, vehicle_.occupancy(), polygon, 0.0) ||
+           vehicle_.obstacles()->hold(polygon[0]);
+  });
 }
 
 /// Find the shut boxes of a slice: those from which a part always covers an occupied cell.
@@ -134,7 +156,7 @@ Apart Slices::find(const Pose& start, const Pose& goal, std::int64_t most) {
     std::vector<Box> boxes;
     std::size_t next = 0;
   };
-  enum Seen : std::uint8_t { NOBODY, FROM_START, FROM_GOAL };
+  enum Seen : std::uint8_t { NOBODY, FROM_START, FROM_GOAL, SHUT };
   std::array<Side, 2> sides{Side{{box_of(start)}}, Side{{box_of(goal)}}};
   std::vector<std::uint8_t> seen(count_ * rows_ * columns_, NOBODY);
   if (number_of(sides[0].boxes[0]) == number_of(sides[1].boxes[0])) return Apart::JOINED;
@@ -153,7 +175,11 @@ Apart Slices::find(const Pose& start, const Pose& goal, std::int64_t most) {
           const Box next{(slice + count_) % count_, row, column};
           std::uint8_t& by = seen[number_of(next)];
           if (by == FROM_GOAL - side) return Apart::JOINED;
-          if (by != NOBODY || !is_open(next)) continue;
+          if (by != NOBODY) continue;
+          if (!is_open(next)) {
+            by = SHUT;
+            continue;
+          }
           by = static_cast<std::uint8_t>(FROM_START + side);
           own.boxes.push_back(next);
         }

@@ -31,6 +31,7 @@ class Slices {
   std::int64_t number_of(const Box& box) const { return (box.slice * rows_ + box.row) * columns_ + box.column; }
   Box box_of(const Pose& pose) const;
   bool is_open(const Box& box);
+  bool meets_polygons(const Box& box);
   void shut(std::int64_t slice);
   void shut_by(std::int64_t row, std::vector<std::uint64_t>& shut) const;
 
@@ -39,6 +40,8 @@ class Slices {
   std::int64_t count_, rows_, columns_, words_;
   /// The shut boxes of each slice, a bit each; none where they are not known yet.
   std::vector<std::vector<std::uint64_t>> shut_;
+  /// The same among polygons: what is always covered, of each part, in place of bits.
+  std::vector<std::vector<std::vector<Vec>>> always_;
   Covered covered_;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "drive/footprint.hpp"
+#include "drive/obstacles.hpp"
 #include "world/disk.hpp"
 
 namespace evenroad::drive {
@@ -17,8 +18,19 @@ class Vehicle {
         yaw_(std::atan2(frame.column_y, frame.column_x)),
         cover_(map, frame, footprint_.cover.radius),
         inner_(map, frame, footprint_.inner.radius) {}
+  /// Among polygons, which must last as long as this: `occupied` are the cells that they touch, and those of `inner`
+  /// are occupied for the disks inside, whose radius allows for that.
+  Vehicle(Matrix<const bool> occupied, Matrix<const bool> inner, const world::Frame& frame, Footprint footprint,
+          const Obstacles& obstacles)
+      : footprint_(std::move(footprint)),
+        yaw_(0.0),
+        cover_(occupied, frame, footprint_.cover.radius),
+        inner_(inner, frame, footprint_.inner.radius),
+        obstacles_(&obstacles) {}
 
   const Footprint& footprint() const { return footprint_; }
+  /// Polygons that are tested in place of the cells that they touch, or nothing.
+  const Obstacles* obstacles() const { return obstacles_; }
   const world::Occupancy& occupancy() const { return cover_.occupancy(); }
   std::int64_t rows() const { return cover_.rows(); }
   std::int64_t columns() const { return cover_.columns(); }
@@ -46,6 +58,7 @@ class Vehicle {
   Footprint footprint_;
   double yaw_;
   world::Disk cover_, inner_;
+  const Obstacles* obstacles_ = nullptr;
 };
 
 }  // namespace evenroad::drive
