@@ -126,6 +126,8 @@ LEAVES = {
     "14": ("tray.png",),
     "15": ("doorway.png", "platform.urdf"),
     "16": ("moving.png",),
+    "17": ("parking.csv", "parking.png"),
+    "18": ("door.png", "door.yaml"),
 }
 """Number of an example -> the files that it leaves in the folder."""
 
