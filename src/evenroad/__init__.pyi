@@ -5,6 +5,7 @@ from evenroad import io as io
 from evenroad import qmc as qmc
 from evenroad import spaces as spaces
 from evenroad import testing as testing
+from evenroad._load import load as load
 from evenroad.certificates.certify_path import certify_path as certify_path
 from evenroad.collision.arm_world import ArmWorld as ArmWorld
 from evenroad.driving import PolygonMap as PolygonMap

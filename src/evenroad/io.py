@@ -23,6 +23,7 @@ from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.planning.result import PlanResult, Status
 from evenroad.points import Origin
+from evenroad.saved.world_value import value_of, world_of
 
 
 def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, object]:
@@ -32,7 +33,8 @@ def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, ob
     ----------
     result : PlanResult
     query : dict
-        Options of the query (map, radius, seed, ...), stored under ``query`` with start and goals.
+        Options of the query (map, radius, seed, ...), stored under ``query`` with start and goals.  Where they are
+        empty, the record has the world itself.
 
     Returns
     -------
@@ -76,6 +78,7 @@ def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, ob
         "timings": {phase: round(value, 6) for phase, value in result.timings.items()},
         "stages": [asdict(stage) for stage in result.stages],
         "origin": asdict(result.origin),
+        **({} if query else {"world": value_of(result.world)}),
         "versions": versions(),
     }
 
@@ -220,6 +223,8 @@ def plan_of(record: object, path: str | os.PathLike[str]) -> tuple[PlanResult, d
         pair = record.get("nearest")
         set_fields(result, nearest=None if pair is None else (str(pair[0]), str(pair[1])))
         set_fields(result, **{name: record.get(name) for name in ("clearance", "length", "bodies")})
+        if record.get("world") is not None:
+            set_fields(result, world=world_of(record["world"], path))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
         raise BrokenFile(f"{path} is not a plan of evenroad: {why}") from error

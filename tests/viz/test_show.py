@@ -10,6 +10,7 @@ from PIL import Image
 
 import evenroad as er
 import evenroad.viz.show as shows
+from evenroad.task import MoveTo, Task
 from evenroad.viz.posture import at_home, draw_arm_world, in_words
 from tests.refused import refused
 
@@ -22,7 +23,8 @@ OF_AN_ARM = er.plan(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (0.5, -1.5, 0.
 class Page:
     address = "http://127.0.0.1:1234"
 
-    def __init__(self, world, result, plan, file, *, port):
+    def __init__(self, world, result, plan, file, *, timed, port):
+        self.timed = timed
         self.planned = plan(world, result.start, result.goal)
         self.done = []
 
@@ -68,12 +70,37 @@ def test_in_a_notebook_an_arm_stays_below_the_cell(pages, notebook):
     assert notebook == [(page.address, "100%", shows.HEIGHT)]
 
 
-def test_without_a_browser_it_is_said_and_nothing_is_left_open(pages, monkeypatch):
-    closed = []
+def test_where_no_browser_opens_the_address_is_printed_and_the_page_is_served(pages, monkeypatch, capsys):
     monkeypatch.setattr(shows.webbrowser, "open", lambda address: False)
-    monkeypatch.setattr(Page, "close", lambda page: closed.append(page))
-    refused(er.errors.NotAvailable, r"no browser .* result\.plot", er.show, OF_AN_ARM)
-    assert len(closed) == 1
+    page = er.show(OF_AN_ARM)
+    assert page.address in capsys.readouterr().out
+    assert page.done == ["served", "closed"]
+
+
+def test_a_trajectory_is_served_with_its_times(pages):
+    trajectory = OF_AN_ARM.trajectory(speed=0.5)
+    np.testing.assert_array_equal(er.show(trajectory).timed[1], trajectory.positions)
+    refused(er.errors.InvalidValue, "does not know its world", er.show, replace(trajectory, world=None))
+
+
+@pytest.mark.parametrize("what", [
+    er.load_robot("ur5"),
+    er.load_scene("shelf"),
+    ON_A_MAP.trajectory(speed=1.0),
+    Task([MoveTo("inside"), MoveTo("home")]).plan(er.ArmWorld("ur5", "box-reach"), "home"),
+    "office.yaml",
+], ids=lambda what: type(what).__name__)  # fmt: skip
+def test_what_has_a_picture_is_shown(what, notebook):
+    picture = er.show(what)
+    assert notebook == [picture]
+    colours = np.unique(np.asarray(picture).reshape(-1, len(picture.getbands())), axis=0)
+    assert len(colours) >= 2
+    assert min(picture.size) > 200
+
+
+def test_a_saved_plan_is_shown_by_its_name(pages, tmp_path):
+    OF_AN_ARM.save(tmp_path / "plan.json")
+    assert er.show(tmp_path / "plan.json").done == ["served", "closed"]
 
 
 @pytest.mark.parametrize("what", [MAP, ON_A_MAP])
@@ -86,7 +113,7 @@ def test_maps_and_disks_are_pictures(what, notebook, monkeypatch):
     assert viewed == [er.show(what)]
 
 
-@pytest.mark.parametrize("what", ["plan.json", None, np.zeros((3, 2))])
+@pytest.mark.parametrize("what", [None, np.zeros((3, 2)), er.Pose()])
 def test_only_plans_and_maps_are_shown(what):
     refused(er.errors.InvalidValue, "a plan or a map can be shown", er.show, what)
 

@@ -77,7 +77,11 @@ class MapTimes:
         made = result.trajectory(**{name: value for name, value in given.items() if value is not None})
         save_trajectories(self.trajectory, replace(made, source=source))
         same = {name: getattr(made, name) for name in ("duration", "deviation", "stops", "proof")}
-        record = {"files": [str(file) for file in self.trajectory], **same, "states": record_of(made)}
+        record = {
+            "files": [str(file) for file in self.trajectory],
+            **same,
+            "states": record_of(replace(made, world=None)),
+        }
         said = [("trajectory", about(made))]
         return said + ([("", ", ".join(map(str, self.trajectory)))] if self.trajectory else []), {"trajectory": record}
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from evenroad._arrays import Floats, set_fields
 from evenroad._files import Json, read_json_file
 from evenroad._seal import has_digest
@@ -14,13 +16,17 @@ from evenroad.cli.plan_parts import KEPT, made_of
 from evenroad.driving.car_world import CarWorld
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import plan_of
+from evenroad.loading.robot_file import RobotFile
+from evenroad.planning.make_result import make_result
 from evenroad.planning.problem import Problem
 from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
-from evenroad.planning.result import PlanResult
+from evenroad.planning.result import PlanResult, Status
 from evenroad.poses.constraint import Constraint, with_tip
+from evenroad.saved.world_value import file_in
 from evenroad.space.path import continued
 from evenroad.trajectory.formats import Saved, saved_of
+from evenroad.trajectory.trajectory import Trajectory
 from evenroad.world import World, load_map
 from evenroad.world.gridmap.disk_world import DiskWorld
 
@@ -46,7 +52,8 @@ class PlanFile:
     """A plan with its problem, its times if it has any, and what else its file says.
 
     `changed` are the names of what changed in its world since; `whole` says whether the file is as it was written, and
-    tells what it was made of; `stops` whether the arm stops at points on the way.
+    tells what it was made of; `stops` whether the arm stops at points on the way.  `drawn` is the robot's file of a
+    plan that was made in Python, which has its world itself.
     """
 
     problem: Problem
@@ -56,6 +63,7 @@ class PlanFile:
     whole: bool = False
     constraints: Constraint | None = None
     stops: bool = False
+    drawn: RobotFile | None = None
 
 
 def read_plan(file: Path, robot: str | None = None, options: dict[str, Any] | None = None) -> PlanFile:
@@ -63,12 +71,40 @@ def read_plan(file: Path, robot: str | None = None, options: dict[str, Any] | No
 
     Raises BrokenFile if it is damaged, and InvalidValue if it names no robot and scene, and no map.
     """
-    return plan_file_of(read_json_file(file, "plan"), file, robot, options)
+    record = read_json_file(file, "plan")
+    if isinstance(record, dict) and "format" in record:
+        return _of_trajectory(record, file)
+    return plan_file_of(record, file, robot, options)
+
+
+def _of_trajectory(record: dict[str, Json], file: Path) -> PlanFile:
+    """Return a trajectory with the problem from its first to its last state, in the world of its file."""
+    trajectory = saved_of(record, file)
+    rows = np.ascontiguousarray(trajectory.positions)
+    start, goals = rows[0].copy(), rows[-1:].copy()
+    source = trajectory.source.get("plan")
+    if trajectory.world is not None:
+        problem, drawn = Problem(trajectory.world, start, goals), file_in(trajectory.source["world"])
+    elif isinstance(source, dict) and isinstance(query := source.get("query"), dict):
+        on_map = "map" in query
+        problem = Problem(_world_on_map(query, file), start, goals) if on_map else problem_of(query, file, start, goals)
+        drawn = problem.source
+    else:
+        raise InvalidValue(f"{file} does not say in which world it was made: view the plan or the task instead")
+    path = trajectory.waypoints if isinstance(trajectory, Trajectory) else rows
+    message = f"trajectory of {trajectory.duration:.4g} s"
+    result = make_result(problem, Status.SOLVED, message, path=path, goal_index=0, proof=trajectory.proof)
+    return PlanFile(problem, result, trajectory, whole=has_digest(record, file), drawn=drawn)
 
 
 def plan_file_of(record: Json, file: Path, robot: str | None = None, options: dict[str, Any] | None = None) -> PlanFile:
     """Return the plan of a record of a file; errors as :func:`read_plan`."""
     result, query = plan_of(record, file)
+    value = record.get("world")
+    if value is not None and robot is None:
+        assert result.world is not None
+        problem = Problem(result.world, result.start, result.goals)
+        return PlanFile(problem, result, whole=has_digest(record, file), drawn=file_in(value))
     if "map" in query:
         problem = Problem(_world_on_map(query, file), result.start, result.goals)
     else:
@@ -122,7 +158,10 @@ def problem_of(
     options = dict(options or {})
     arm = robot or query.get("robot")
     if not isinstance(arm, str) or not isinstance(query.get("scene"), str):
-        raise InvalidValue(f"{file} names neither a robot and its scene nor a map: evenroad plan writes such plans")
+        raise InvalidValue(
+            f"{file} names neither a robot and its scene nor a map, and has no world itself: evenroad plan, and"
+            " the save of a result that knows its world, write such plans"
+        )
     _require_sound(file, query)
     for name in FILES:
         options[name] = options.get(name) or query.get(name) or options.get(name)

@@ -20,7 +20,7 @@ from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.trajectory import Trajectory, arm_trajectory, controller_joints, limits_of, proved_in
-from evenroad.trajectory.formats import trajectory_of
+from evenroad.trajectory.formats import saved_of
 from evenroad.trajectory.make import DEVIATION
 
 _SAME = 1e-6
@@ -40,6 +40,9 @@ def sent_plan(record: Json, file: Path, fastest: float) -> tuple[Trajectory, str
     if not hasattr(plan.problem.world, "robot"):
         raise NotAvailable(f"{file} is a plan on a map; plans of arms are sent")
     _require_unchanged(plan.changed, file)
+    value = record.get("world")
+    if isinstance(value, dict) and (value.get("keeps") or record.get("deviation")):
+        raise NotAvailable(f"{file} does not say what its path keeps on its way: send its trajectory, which was saved")
     kept = plan.trajectory if isinstance(plan.trajectory, Trajectory) else None
     is_kept = kept is not None and bool((abs(kept.velocities) <= fastest).all())
     moves = kept if kept is not None and is_kept else _made(plan, file, fastest)
@@ -52,7 +55,9 @@ def sent_trajectory(record: Json, file: Path, given: Given | None) -> Trajectory
 
     Raises as :func:`sent_plan`.
     """
-    trajectory = trajectory_of(record, file)
+    trajectory = saved_of(record, file)
+    if not isinstance(trajectory, Trajectory):
+        raise NotAvailable(f"{file} is a trajectory of a car; those of arms are sent")
     whole = has_digest(record, file)
     if given is None and "task" in trajectory.source:
         return _planned_again(trajectory, file)
@@ -62,6 +67,8 @@ def sent_trajectory(record: Json, file: Path, given: Given | None) -> Trajectory
         options["group"] = options["group"] or ",".join(trajectory.names)
         problem = arm_problem(robot, scene, first, [last], Reading(held=trajectory.held), **options)
         return _proved(trajectory, problem, None, file, whole=whole)
+    if trajectory.world is not None:
+        return _proved(trajectory, Problem(trajectory.world, first, last[np.newaxis]), None, file, whole=whole)
     source = trajectory.source.get("plan")
     if not isinstance(source, dict) or not isinstance(source.get("query"), dict):
         raise InvalidValue(

@@ -28,6 +28,7 @@ from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult
 from evenroad.roadmap import Budget
+from evenroad.task.save import is_task, load_parts
 from evenroad.trajectory.car import are_free
 from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.corners import drivable
@@ -47,7 +48,7 @@ class View(RobotOptions):
     """
 
     world: Positional[Path]
-    """A plan of evenroad plan (.json); or a scene (.yaml), with --robot."""
+    """A plan, a trajectory or a task that was saved (.json); or a scene (.yaml), with --robot."""
     html: Path | None = None
     """Write one file that plays offline: play, pause, speed, joints, clearance; nothing is opened."""
     png: Path | None = None
@@ -76,6 +77,8 @@ class View(RobotOptions):
                 if file.suffix.lower() != suffix:
                     raise InvalidValue(f"{option} must name a {suffix}, got {str(file)!r}")
                 require_writable_folder(file)
+        if is_task(self.world):
+            return self._show_task()
         plan = self.plan_file()
         if plan.changed:
             print(f"evenroad: the {' and '.join(plan.changed)} changed since this was planned", file=sys.stderr)
@@ -97,6 +100,19 @@ class View(RobotOptions):
                 webbrowser.open(page.resolve().as_uri())
         return 0
 
+    def _show_task(self) -> int:
+        """Draw the motions of a task's answer; return 0."""
+        from evenroad.viz.result import plot_parts
+
+        if self.html is not None or self.gif is not None:
+            raise NotAvailable("the answer to a task is drawn, with --png; --html and --gif are of one plan")
+        file = Path(f"{self.world.stem}.png") if self.png is None else self.png
+        plot_parts(load_parts(self.world), file)
+        print(f"wrote {file}")
+        if self.png is None:
+            webbrowser.open(file.resolve().as_uri())
+        return 0
+
     def plan_file(self) -> PlanFile:
         """Return the plan, or one that is made in the scene."""
         if self.world.suffix.lower() == ".json":
@@ -109,6 +125,8 @@ class View(RobotOptions):
         return PlanFile(problem, self._planned(problem))
 
     def _file(self, plan: PlanFile) -> RobotFile | None:
+        if plan.drawn is not None:
+            return plan.drawn
         if plan.problem.source is None and self.robot is not None:
             return RobotFile(find_robot(self.robot)[0])
         return plan.problem.source

@@ -96,6 +96,19 @@ def _written(array: Floats) -> object:
     return {"shape": array.shape, "bytes": base64.b64encode(array.tobytes()).decode()}
 
 
+def robot_as_text(robot: Robot) -> str:
+    """Return a robot as a text, JSON with infinite limits."""
+    return json.dumps(asdict(robot), default=_written)
+
+
+def robot_of_text(text: str) -> Robot:
+    """Return the robot of a text; TypeError, KeyError or ValueError if it is not such."""
+    robot = _restored(Robot, json.loads(text))
+    if not isinstance(robot, Robot):
+        raise TypeError("a robot must be a mapping")
+    return robot
+
+
 _AT_ONCE = 100_000_000
 """Age below which a file might be saved again without a new time stamp [ns]."""
 _FOLDERS = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")

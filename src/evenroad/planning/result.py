@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, set_fields
 from evenroad._call import explains_calls
 from evenroad._hints import KnowsElsewhere
 from evenroad._rows import Rows
@@ -407,7 +407,9 @@ class PlanResult(Rows, metaclass=KnowsElsewhere):
         from evenroad.trajectory.of_plan import trajectory_of
 
         path, world = self._required("driven")
-        return trajectory_of(world, path, limits, speed=speed, pieces=self.pieces, **options)
+        made = trajectory_of(world, path, limits, speed=speed, pieces=self.pieces, **options)
+        set_fields(made, world=world)
+        return made
 
     def certify(
         self,

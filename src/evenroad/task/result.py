@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from evenroad.task.steps import Move, Step, Wait
 from evenroad.trajectory.corners import MOST_STATES
 from evenroad.trajectory.limits import Limits, TipLimits, limits_of
 from evenroad.trajectory.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 CURVE_DEVIATION = 5e-5
 """Default of a trajectory's largest distance from its path along a curve [rad or m], to keep the tip near the curve."""
@@ -90,6 +94,66 @@ class TaskResult:
         if not self.solved:
             return f"TaskResult({self.status}, step {self.step})"
         return f"TaskResult(solved, {len(self.steps)} steps, cost {self.cost:.4g})"
+
+    def plot(self, path: str | os.PathLike[str] | None = None) -> Image:
+        """Return a picture of the motions, one below the other, as a PIL image; save it if a file is named.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            A ``.png``.
+
+        Returns
+        -------
+        PIL.Image.Image
+
+        Raises
+        ------
+        NotAvailable
+            If nothing moves.
+        BrokenFile
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> from evenroad.task import MoveTo, Task
+        >>> Task([MoveTo("inside")]).plan(er.ArmWorld("ur5", "box-reach"), "home").plot().mode
+        'RGB'
+        """
+        from evenroad.viz.result import plot_parts
+
+        return plot_parts(self.parts, path)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the answer to a file, atomically.
+
+        Parameters
+        ----------
+        path : str or path-like
+            ``.json``: the plans of all motions, each with its world; ``.csv``: the waypoints; ``.png``: a picture.
+
+        Raises
+        ------
+        UnknownName
+            For another suffix.
+        InvalidValue
+            For a ``.csv`` of a task that is not solved.
+        BrokenFile
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import evenroad as er
+        >>> from evenroad.task import MoveTo, Task
+        >>> done = Task([MoveTo("inside")]).plan(er.ArmWorld("ur5", "box-reach"), "home")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     done.save(f"{folder}/task.json")
+        """
+        from evenroad.task.save import save_task
+
+        save_task(self, path)
 
     def trajectory(self, **options: Any) -> Trajectory:
         """Return one trajectory through all steps. It stops where the gripper acts, and where a line ends.
@@ -174,6 +238,8 @@ def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
     order = ("resolution", "certified", "exact")
     return replace(
         parts[0],
+        # Its parts have worlds of their own, in which other things are held.
+        world=None,
         times=np.arange(len(positions), dtype=np.float64) * step,
         positions=positions,
         velocities=velocities,

@@ -15,6 +15,7 @@ from evenroad._arrays import Floats
 from evenroad._files import Json
 from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile
+from evenroad.saved.world_value import source_of
 from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.corners import MOST_STATES
 from evenroad.trajectory.drive_limits import DriveLimits
@@ -77,7 +78,7 @@ def car_record(trajectory: CarTrajectory) -> dict[str, object]:
         "times": trajectory.times.tolist(),
         "poses": trajectory.positions.tolist(),
         "speeds": trajectory.speeds.tolist(),
-        **({"source": dict(trajectory.source)} if trajectory.source else {}),
+        **source_of(trajectory.source, trajectory.world),
     }
 
 

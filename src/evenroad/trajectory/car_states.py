@@ -18,6 +18,7 @@ from evenroad.errors import InvalidValue, shown
 from evenroad.trajectory.clothoid import poses_on, starts_of
 from evenroad.trajectory.drive_limits import DriveLimits
 from evenroad.trajectory.speed_law import Segments, SpeedLaw, fastest_law
+from evenroad.world import World
 
 _PER_CLOTHOID = 16
 """Number of parts of a clothoid, each with the largest speed of its sharper end."""
@@ -58,6 +59,8 @@ class CarTrajectory:
         Proof of the motion: ``exact``, ``certified`` (with blends), or ``unchecked`` in what a file says.
     source : mapping of str to JSON values
         Inputs of the ``evenroad plan`` that made it; empty if unknown.
+    world : World or None
+        World that it was made in; None if unknown.
 
     Examples
     --------
@@ -78,6 +81,7 @@ class CarTrajectory:
     stops: int = 0
     proof: str = "unchecked"
     source: Mapping[str, Any] = field(default_factory=dict)
+    world: World | None = None
 
     def at(self, t: npt.ArrayLike) -> Floats:
         """Return poses x, y, angle at times, 0 <= t <= duration [s], (..., 3); angles go on beyond whole turns.

@@ -16,11 +16,12 @@ from typing import TypeAlias
 import numpy as np
 import yaml
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, set_fields
 from evenroad._checks import require_extra
 from evenroad._files import Json, atomic_write, read_json_file
 from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, UnknownName
+from evenroad.saved.world_value import source_of, world_of
 from evenroad.trajectory.car_formats import FORMAT as OF_CARS
 from evenroad.trajectory.car_formats import PATH, Message, car_csv, car_json, car_record, car_trajectory_of, nav_path
 from evenroad.trajectory.car_states import CarTrajectory
@@ -102,7 +103,10 @@ def load_trajectory(path: str | os.PathLike[str]) -> Saved:
 def saved_of(record: Json, path: str | os.PathLike[str]) -> Saved:
     """Return the trajectory of an arm, a disk or a car of a JSON record of a file; errors as :func:`trajectory_of`."""
     is_of_car = isinstance(record, dict) and record.get("format") == OF_CARS
-    return car_trajectory_of(record, path) if is_of_car else trajectory_of(record, path)
+    trajectory = car_trajectory_of(record, path) if is_of_car else trajectory_of(record, path)
+    if trajectory.source.get("world") is not None:
+        set_fields(trajectory, world=world_of(trajectory.source["world"], path))
+    return trajectory
 
 
 def trajectory_of(record: Json, path: str | os.PathLike[str]) -> Trajectory:
@@ -188,7 +192,7 @@ def trajectory_record(trajectory: Trajectory, order: Sequence[str] | None = None
         "waypoints": trajectory.waypoints.tolist(),
         "times": trajectory.times.tolist(),
         **{name: getattr(trajectory, name).tolist() for name in _TABLES},
-        **({"source": dict(trajectory.source)} if trajectory.source else {}),
+        **source_of(trajectory.source, trajectory.world),
     }
 
 

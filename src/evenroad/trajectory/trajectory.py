@@ -18,6 +18,7 @@ from evenroad._hints import KnowsElsewhere
 from evenroad._rows import Rows
 from evenroad.errors import InvalidValue, shown
 from evenroad.trajectory.limits import Limits
+from evenroad.world import World
 
 ON_MAPS = "x", "y", "angle"
 """Names of what moves in place of joints on a map; a disk has the first two."""
@@ -63,6 +64,8 @@ class Trajectory(Rows, metaclass=KnowsElsewhere):
         :func:`evenroad.trajectory.urscript.with_radii`; empty if not computed.
     source : mapping of str to JSON values
         Inputs of the ``evenroad plan`` or ``evenroad run`` that made it; empty if unknown.
+    world : World or None
+        World that it was made in; None if unknown.
 
     Examples
     --------
@@ -89,6 +92,7 @@ class Trajectory(Rows, metaclass=KnowsElsewhere):
     proof: str = "unchecked"
     radii: tuple[float, ...] = ()
     source: Mapping[str, Any] = field(default_factory=dict)
+    world: World | None = None
 
     def at(self, t: npt.ArrayLike) -> Floats:
         """Return positions at given times; between states they follow a cubic of positions and velocities.

@@ -6,15 +6,21 @@ import numpy as np
 from PIL import Image
 
 from evenroad._arrays import Floats
+from evenroad._checks import counted
 from evenroad.collision.arm_world import ArmWorld
+from evenroad.errors import NotAvailable
 from evenroad.loading.cache import file_of
 from evenroad.planning.make_result import make_result
 from evenroad.planning.problem import Problem
 from evenroad.planning.result import Status
+from evenroad.scenes.scene import Scene
 from evenroad.scenes.states import named_states
 from evenroad.viz import style
 from evenroad.viz.arm import SIZE, ArmScene, with_contact
+from evenroad.viz.bodies import obstacle_part
+from evenroad.viz.camera import best_camera
 from evenroad.viz.sheet import Entry, Sheet
+from evenroad.viz.stage import Stage
 
 
 def draw_arm_world(world: ArmWorld, q: object = None) -> Image.Image:
@@ -30,6 +36,18 @@ def draw_arm_world(world: ArmWorld, q: object = None) -> Image.Image:
     said = f"{world.robot.name} in {world.scene.name}: {in_words(world, row)}"
     legend: list[Entry] = [] if free else [("in collision", style.COLLISION, "white")]
     return Sheet.of_picture(picture, said, [("the robot", style.ARM[0], "white"), *legend]).image
+
+
+def draw_scene(scene: Scene) -> Image.Image:
+    """Return a picture of a scene without a robot."""
+    if not len(scene.obstacles):
+        raise NotAvailable(f"scene {scene.name!r} has no obstacle that could be drawn")
+    parts = [obstacle_part(each) for each in scene.obstacles]
+    corners = np.concatenate([part.corners for part in parts]).reshape(-1, 3)
+    camera = best_camera(corners, np.zeros((0, 3, 3)), corners, SIZE)
+    picture = Stage(camera, float(corners[:, 2].min()) - 0.005).picture(parts)
+    count = counted(len(parts), "obstacle")
+    return Sheet.of_picture(picture, f"{scene.name}: {count}: {', '.join(scene.names)}", []).image
 
 
 def at_home(world: ArmWorld) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 
 import numpy as np
 from PIL import Image
@@ -44,6 +45,20 @@ def plot_result(
         known = "its world is not known: plot(world=...)" if world is None else f"its world is a {type(world).__name__}"
         raise NotAvailable(f"plans of disks and cars on maps and of arms can be drawn, but of this one {known}")
     return _kept(picture, path)
+
+
+def plot_parts(parts: Sequence[PlanResult], path: str | os.PathLike[str] | None = None) -> Image.Image:
+    """Return the pictures of plans, one below the other; of those in which something moves."""
+    moving = [each for each in parts if each.cost or not each.solved]
+    if not moving:
+        raise NotAvailable("there is nothing to draw: nothing moves")
+    pictures = [plot_result(each) for each in moving]
+    size = max(each.width for each in pictures), sum(each.height for each in pictures)
+    sheet, top = Image.new("RGB", size, "white"), 0
+    for each in pictures:
+        sheet.paste(each, ((size[0] - each.width) // 2, top))
+        top += each.height
+    return _kept(sheet, path)
 
 
 def plot_map(gridmap: GridMap, path: str | os.PathLike[str] | None = None) -> Image.Image:

@@ -1,41 +1,68 @@
-"""Showing a plan, a map, or an arm in its scene: in the browser, or below a notebook's cell."""
+"""Showing what there is: in the browser, or below a notebook's cell."""
 
 from __future__ import annotations
 
+import os
 import sys
 import webbrowser
+from collections.abc import Callable
 from importlib import import_module
 from types import ModuleType
+from typing import TypeAlias
 
 from PIL import Image
 
+from evenroad._load import load
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.errors import InvalidValue, NotAvailable, shown
+from evenroad.errors import InvalidValue, shown
 from evenroad.loading.cache import file_of
+from evenroad.planning.make_result import make_result
 from evenroad.planning.plan import plan as plan_path
-from evenroad.planning.result import PlanResult
+from evenroad.planning.problem import Problem
+from evenroad.planning.result import PlanResult, Status
+from evenroad.robots.robot import Robot
+from evenroad.scenes.scene import Scene
+from evenroad.task.motion import Motion
+from evenroad.task.result import TaskResult
+from evenroad.trajectory.car_states import CarTrajectory
+from evenroad.trajectory.trajectory import Trajectory
 from evenroad.viz.page import ArmPage
-from evenroad.viz.posture import draw_arm_world
+from evenroad.viz.posture import draw_arm_world, draw_scene
+from evenroad.viz.result import plot_parts
 from evenroad.world.gridmap import GridMap
 
+Shown: TypeAlias = (
+    PlanResult
+    | TaskResult
+    | Trajectory
+    | CarTrajectory
+    | Motion
+    | GridMap
+    | ArmWorld
+    | Robot
+    | Scene
+    | str
+    | os.PathLike[str]
+)
+"""What can be shown."""
 HEIGHT = 600
 """Height of the page below a notebook's cell [pixels]."""
 
 
-def show(what: PlanResult | GridMap | ArmWorld, q: object = None, *, port: int = 0) -> ArmPage | Image.Image:
-    """Show a plan: of an arm as a page in the browser, with its path under a slider; others and maps as a picture.
+def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | Image.Image:
+    """Show a plan or a trajectory of an arm as a page in the browser, with its path under a slider; else a picture.
 
-    An arm in its scene is a picture, too: the robot at a configuration, with what touches in red.  Its title says what
-    touches, or which two bodies are nearest, and how far.  In a notebook all appears below the cell.  Elsewhere a page
-    is served until Ctrl-C.
+    A robot, also in its scene, is a picture of it at a configuration, with what touches in red.  The title says what
+    touches, or which two bodies are nearest, and how far.  A task is the pictures of its motions.  In a notebook all
+    appears below the cell.  Elsewhere a page is served until Ctrl-C; where no browser opens, its address is printed.
 
     Parameters
     ----------
-    what : PlanResult, GridMap or ArmWorld
-        A plan that knows its world, a map, or an arm in its scene.
+    what : PlanResult, Trajectory, TaskResult, Motion, ArmWorld, Robot, Scene, GridMap, or a file of one
+        A plan or a trajectory must know its world, as those of :func:`evenroad.plan` and their files do.
     q : array_like, shape (dim,), mapping or str, optional
-        The configuration at which an arm's world shows the robot, as `ArmWorld.valid` takes one.  Default: the state
-        ``home``, or where there is none all joints at 0, or at the nearest to it within limits.
+        The configuration at which a robot is shown, as `ArmWorld.valid` takes one.  Default: the state ``home``, or
+        where there is none all joints at 0, or at the nearest to it within limits.
     port : int
         Where the page of an arm is served, on this computer alone; 0 takes any that is free.
 
@@ -47,11 +74,11 @@ def show(what: PlanResult | GridMap | ArmWorld, q: object = None, *, port: int =
     Raises
     ------
     InvalidValue
-        If it is none of these, or `q` is not a configuration of the robot, or is given with a plan or a map.
+        If it is none of these, or `q` is not a configuration of the robot, or is given with something else.
     UnknownName
         If `q` names a state or a joint that does not exist.
     NotAvailable
-        If its world cannot be drawn, the port is taken, or there is no browser.
+        If its world cannot be drawn, or the port is taken.
 
     Examples
     --------
@@ -60,26 +87,66 @@ def show(what: PlanResult | GridMap | ArmWorld, q: object = None, *, port: int =
     >>> er.show(result)  # doctest: +SKIP
     >>> er.show(er.ArmWorld("ur5", "box-reach"), "inside")  # doctest: +SKIP
     """
-    if not isinstance(what, PlanResult | GridMap | ArmWorld):
-        kinds = "a plan or a map can be shown, as er.plan and er.load_map give it, and er.ArmWorld(robot, scene)"
-        raise InvalidValue(f"{kinds}, got {shown(what)}")
-    if q is not None and not isinstance(what, ArmWorld):
-        raise InvalidValue(f"q says where a robot stands in an er.ArmWorld, got q={shown(q)} with a plan or a map")
+    if isinstance(what, str | os.PathLike):
+        what = load(what)  # type: ignore[assignment]
+    if q is not None and not isinstance(what, ArmWorld | Robot):
+        raise InvalidValue(f"q says where a robot stands, also in an er.ArmWorld, got q={shown(q)} with something else")
     notebook = _notebook()
-    if not isinstance(what, PlanResult) or not isinstance(what.world, ArmWorld):
-        picture = draw_arm_world(what, q) if isinstance(what, ArmWorld) else what.plot()
-        if notebook is None:
-            picture.show()
-        else:
-            notebook.display(picture)
-        return picture
-    page = ArmPage(what.world, what, plan_path, file_of(what.world.robot), port=port)
+    moving = what if isinstance(what, PlanResult) else driven(what)
+    if moving is not None and isinstance(moving.world, ArmWorld):
+        return _served(moving, what, port, notebook)
+    if moving is not None:
+        picture = moving.plot()
+    else:
+        draw = next((each for kind, each in _pictures(q) if isinstance(what, kind)), None)
+        if draw is None:
+            kinds = "a trajectory, a task, a robot, a scene, an er.ArmWorld, or a file of one"
+            raise InvalidValue(f"a plan or a map can be shown, {kinds}, got {shown(what)}")
+        picture = draw(what)
+    if notebook is None:
+        picture.show()
+    else:
+        notebook.display(picture)
+    return picture
+
+
+def driven(what: object) -> PlanResult | None:
+    """Return a trajectory as a plan in its world; None of what is no trajectory."""
+    if not isinstance(what, Trajectory | CarTrajectory):
+        return None
+    if what.world is None:
+        raise InvalidValue("this trajectory does not know its world, without which it cannot be shown")
+    rows = what.waypoints if isinstance(what, Trajectory) else what.positions
+    problem = Problem(what.world, what.positions[0].copy(), what.positions[-1:].copy())
+    return make_result(
+        problem, Status.SOLVED, f"trajectory of {what.duration:.4g} s", path=rows, goal_index=0, proof=what.proof
+    )
+
+
+def _pictures(q: object) -> list[tuple[type, Callable[..., Image.Image]]]:
+    """Return what draws a value of each type."""
+    return [
+        (ArmWorld, lambda world: draw_arm_world(world, q)),
+        (Robot, lambda robot: draw_arm_world(ArmWorld(robot), q)),
+        (Scene, draw_scene),
+        (GridMap, lambda grid: grid.plot()),
+        (TaskResult, lambda done: done.plot()),
+        (Motion, lambda motion: plot_parts(motion.parts)),
+    ]
+
+
+def _served(result: PlanResult, what: object, port: int, notebook: ModuleType | None) -> ArmPage:
+    """Serve the page of an arm's plan until Ctrl-C, or show it below a notebook's cell."""
+    world = result.world
+    assert isinstance(world, ArmWorld), "only of an arm"
+    timed = (what.times, what.positions) if isinstance(what, Trajectory) else None
+    page = ArmPage(world, result, plan_path, file_of(world.robot), timed=timed, port=port)
     if notebook is not None:
         notebook.display(notebook.IFrame(page.address, "100%", HEIGHT))
         return page
     try:
         if not webbrowser.open(page.address):
-            raise NotAvailable("there is no browser on this computer: result.plot('plan.png') draws the plan")
+            print(f"{page.address}   (Ctrl-C ends it)", flush=True)
         page.serve()
     except KeyboardInterrupt:
         pass

@@ -1,0 +1,1 @@
+"""Worlds as plain JSON values: what results and trajectories of Python are saved with."""

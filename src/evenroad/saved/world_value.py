@@ -1,0 +1,147 @@
+"""A world as plain JSON values, and back.
+
+The values are those of the robot and the scene, or of the map and what moves on it, so that no file need be there.  Of
+a world of constraints they are those of the world in which these are kept, with a mark.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Bools
+from evenroad._files import Json
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.constraints.constrained_world import KeptWorld
+from evenroad.driving.car_world import CarWorld
+from evenroad.driving.footprint import Footprint
+from evenroad.errors import BrokenFile, EvenroadError, NotAvailable
+from evenroad.geometry.shapes import Mesh
+from evenroad.loading.cache import file_of, robot_as_text, robot_of_text
+from evenroad.loading.robot_file import RobotFile
+from evenroad.scenes.obstacles import Obstacles
+from evenroad.scenes.scene import Obstacle, Scene
+from evenroad.scenes.written import read_scene, scene_files
+from evenroad.world import World
+from evenroad.world.gridmap import DiskWorld, GridMap, MapFrame
+
+MOST_CELLS = 400_000_000
+"""Largest number of cells of a map that is read."""
+_OF_CAR = ("turning_radius", "reverse", "holonomic", "clearance")
+
+
+def value_of(world: World | None) -> dict[str, Json] | None:
+    """Return a world as plain JSON values; None of a world that has none, as one of a user's function."""
+    if isinstance(world, KeptWorld):
+        inner = value_of(world.world)
+        return None if inner is None else {**inner, "keeps": True}
+    if isinstance(world, ArmWorld):
+        try:
+            scene = scene_files(world.scene, "scene")
+        except NotAvailable:
+            return None
+        file = file_of(world.robot)
+        return {
+            "robot": robot_as_text(world.robot),
+            "file": None if file is None else {**asdict(file), "path": str(file.path.absolute())},
+            "scene": {"text": scene.text, "files": scene.files, "meshes": _names_of_meshes(world.scene)},
+            "resolution": world.resolution,
+            "clearance": world.clearance,
+        }
+    if isinstance(world, DiskWorld):
+        return {**_map_value(world.grid), "radius": world.radius, "clearance": world.margin}
+    if isinstance(world, CarWorld):
+        outlines = [outline.tolist() for outline in world.footprint.outlines]
+        return {**_map_value(world.grid), "footprint": outlines, **{name: getattr(world, name) for name in _OF_CAR}}
+    return None
+
+
+def world_of(value: object, where: object) -> World:
+    """Return the world of plain JSON values; BrokenFile, which names the file `where`, if they are not such."""
+    try:
+        if not isinstance(value, dict):
+            raise TypeError("it must be a mapping")
+        if "robot" in value:
+            scene = value["scene"]
+            with TemporaryDirectory() as folder:
+                read = read_scene(scene["text"], scene["files"], Path(folder))
+            named = _with_names(read, scene["meshes"])
+            return ArmWorld(robot_of_text(value["robot"]), named, value["resolution"], value["clearance"])
+        grid = _map_of(value["map"])
+        if "radius" in value:
+            return DiskWorld(grid, value["radius"], value["clearance"])
+        return CarWorld(grid, Footprint(value["footprint"]), **{name: value[name] for name in _OF_CAR})
+    except (EvenroadError, TypeError, ValueError, AttributeError, LookupError, zlib.error) as error:
+        raise BrokenFile(f"{where} is damaged: its world cannot be read: {error}") from error
+
+
+def source_of(source: Mapping[str, Any], world: World | None) -> dict[str, Any]:
+    """Return what a trajectory was made of, as its file says: its `source`, else its world, else nothing."""
+    if source:
+        return {"source": dict(source)}
+    value = value_of(world)
+    return {} if value is None else {"source": {"world": value}}
+
+
+def file_in(value: Mapping[str, Any]) -> RobotFile | None:
+    """Return the robot's file that a world was made of, if it is still there: it has what is drawn of the links."""
+    said = value.get("file")
+    if not isinstance(said, dict) or not Path(str(said.get("path"))).is_file():
+        return None
+    pairs = {name: tuple((str(a), str(b)) for a, b in said.get(name, ())) for name in ("packages", "arguments")}
+    flags = {name: bool(said.get(name)) for name in ("use_visuals", "as_drawn", "upright_meshes")}
+    return RobotFile(Path(said["path"]), **pairs, **flags)  # type: ignore[arg-type]
+
+
+def _names_of_meshes(scene: Scene) -> dict[str, Json]:
+    """Return obstacle -> name of its mesh, which a file of another name would change."""
+    return {each.name: each.body.triangles.name for each in scene.obstacles if isinstance(each.body, Mesh)}
+
+
+def _with_names(scene: Scene, names: Mapping[str, str]) -> Scene:
+    """Return a scene whose meshes have these names, obstacle -> name."""
+    if not names:
+        return scene
+
+    def renamed(each: Obstacle) -> Obstacle:
+        if not isinstance(each.body, Mesh):
+            return each
+        return replace(each, body=replace(each.body, source=replace(each.body.triangles, name=names[each.name])))
+
+    return replace(scene, obstacles=Obstacles(map(renamed, scene.obstacles)))
+
+
+def _map_value(grid: GridMap) -> dict[str, Json]:
+    cells = {name: _packed(getattr(grid, name)) for name in ("occupied", "unknown")}
+    return {"map": {**asdict(grid.frame), **cells}}
+
+
+def _map_of(value: Any) -> GridMap:
+    said = {name: value[name] for name in MapFrame.__dataclass_fields__}
+    frame = MapFrame(**{**said, "origin": tuple(said["origin"])})
+    if frame.rows * frame.cols > MOST_CELLS:
+        raise ValueError(f"a map of more than {MOST_CELLS} cells")
+    occupied, unknown = (_unpacked(value[name], frame) for name in ("occupied", "unknown"))
+    return GridMap(occupied, frame, unknown)
+
+
+def _packed(cells: Bools) -> str:
+    return base64.b64encode(zlib.compress(np.packbits(cells).tobytes(), 6)).decode()
+
+
+def _unpacked(text: str, frame: MapFrame) -> Bools:
+    count = frame.rows * frame.cols
+    size = (count + 7) // 8
+    # Few bytes can stand for very many: no more are made than the map has.
+    content = zlib.decompressobj().decompress(base64.b64decode(text, validate=True), size + 1)
+    if len(content) != size:
+        raise ValueError(f"{count} cells expected")
+    bits = np.unpackbits(np.frombuffer(content, dtype=np.uint8), count=count)
+    return bits.astype(bool).reshape(frame.rows, frame.cols)
