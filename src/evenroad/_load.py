@@ -49,8 +49,8 @@ def load(path: str | os.PathLike[str]) -> PlanResult | Saved | Scene | GridMap |
     Examples
     --------
     >>> import evenroad as er
-    >>> er.load("box-reach"), er.load("office.yaml")
-    (Scene('box-reach', 6 obstacles: table, box floor, ...), GridMap(160 x 240 cells of 0.05, 26% occupied))
+    >>> er.load("office.yaml")
+    GridMap(160 x 240 cells of 0.05, 26% occupied)
     """
     file = as_file("what is loaded", path)
     suffix = file.suffix.lower()

@@ -55,7 +55,7 @@ def measure(points: PointSet | npt.ArrayLike | str | os.PathLike[str]) -> dict[s
     --------
     >>> import evenroad as er
     >>> round(er.measure(er.draw("even", 64, 2))["separation"], 3)
-    0.125
+    0.119
     """
     read = load_points(points) if isinstance(points, str | os.PathLike) else points
     chosen = read if isinstance(read, PointSet) else PointSet(np.asarray(read))

@@ -194,7 +194,7 @@ class Trajectory(Rows, metaclass=KnowsElsewhere):
         >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
         >>> trajectory = er.plan(world, (3, 3), (27, 17)).trajectory(speed=5.0)
         >>> trajectory.columns()[0]
-        ('joint_1', 'joint_2')
+        ('x', 'y')
         """
         order = tuple(order or self.controller or (*self.names, *self.held))
         for name in order:
