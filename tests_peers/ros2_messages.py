@@ -1,57 +1,13 @@
 """Messages of ROS 2 without ROS: types that rosbags does not know, and bytes written by the rules of CDR."""
 
-import importlib
 import struct
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-typesys = pytest.importorskip("rosbags.typesys")
-FOLDER = Path(__file__).parents[1] / "examples" / "ros2"
+from tests_peers.ros2.fields import MOVEIT
 
-MOVEIT = {
-    "object_recognition_msgs/msg/ObjectType": "string key\nstring db",
-    "octomap_msgs/msg/Octomap": "std_msgs/Header header\nbool binary\nstring id\nfloat64 resolution\nint8[] data",
-    "octomap_msgs/msg/OctomapWithPose": (
-        "std_msgs/Header header\ngeometry_msgs/Pose origin\noctomap_msgs/Octomap octomap"
-    ),
-    "moveit_msgs/msg/CollisionObject": (
-        "std_msgs/Header header\ngeometry_msgs/Pose pose\nstring id\nobject_recognition_msgs/ObjectType type\n"
-        "shape_msgs/SolidPrimitive[] primitives\ngeometry_msgs/Pose[] primitive_poses\n"
-        "shape_msgs/Mesh[] meshes\ngeometry_msgs/Pose[] mesh_poses\n"
-        "shape_msgs/Plane[] planes\ngeometry_msgs/Pose[] plane_poses\n"
-        "string[] subframe_names\ngeometry_msgs/Pose[] subframe_poses\nbyte operation"
-    ),
-    "moveit_msgs/msg/AttachedCollisionObject": (
-        "string link_name\nmoveit_msgs/CollisionObject object\nstring[] touch_links\n"
-        "trajectory_msgs/JointTrajectory detach_posture\nfloat64 weight"
-    ),
-    "moveit_msgs/msg/RobotState": (
-        "sensor_msgs/JointState joint_state\nsensor_msgs/MultiDOFJointState multi_dof_joint_state\n"
-        "moveit_msgs/AttachedCollisionObject[] attached_collision_objects\nbool is_diff"
-    ),
-    "moveit_msgs/msg/AllowedCollisionEntry": "bool[] enabled",
-    "moveit_msgs/msg/AllowedCollisionMatrix": (
-        "string[] entry_names\nmoveit_msgs/AllowedCollisionEntry[] entry_values\n"
-        "string[] default_entry_names\nbool[] default_entry_values"
-    ),
-    "moveit_msgs/msg/LinkPadding": "string link_name\nfloat64 padding",
-    "moveit_msgs/msg/LinkScale": "string link_name\nfloat64 scale",
-    "moveit_msgs/msg/ObjectColor": "string id\nstd_msgs/ColorRGBA color",
-    "moveit_msgs/msg/PlanningSceneWorld": (
-        "moveit_msgs/CollisionObject[] collision_objects\noctomap_msgs/OctomapWithPose octomap"
-    ),
-    "moveit_msgs/msg/PlanningScene": (
-        "string name\nmoveit_msgs/RobotState robot_state\nstring robot_model_name\n"
-        "geometry_msgs/TransformStamped[] fixed_frame_transforms\n"
-        "moveit_msgs/AllowedCollisionMatrix allowed_collision_matrix\n"
-        "moveit_msgs/LinkPadding[] link_padding\nmoveit_msgs/LinkScale[] link_scale\n"
-        "moveit_msgs/ObjectColor[] object_colors\nmoveit_msgs/PlanningSceneWorld world\nbool is_diff"
-    ),
-}
-"""The fields of what rosbags does not know, as MoveIt 2 has them."""
+typesys = pytest.importorskip("rosbags.typesys")
 
 
 @pytest.fixture(scope="module")
@@ -87,17 +43,6 @@ def _nothing(make, node, of):
     if kind[0] == typesys.base.Nodetype.BASE and kind[1][0] != "string":
         return np.zeros(count, dtype={"byte": "uint8"}.get(kind[1][0], kind[1][0]))
     return [_nothing(make, *kind) for _ in range(count)]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _folder():
-    sys.path.insert(0, str(FOLDER))
-    yield
-    sys.path.remove(str(FOLDER))
-
-
-def _module(name):
-    return importlib.import_module(name)
 
 
 class Cdr:

@@ -1,18 +1,17 @@
-"""The arm node of examples/ros2 without ROS: rosbags' messages in, and what goes out compared byte for byte."""
+"""The arm's node without ROS: rosbags' messages in, and what goes out compared byte for byte."""
 
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
 from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
+from evenroad.ros2.arm_query import ArmQuery, plan_for_arm
+from evenroad.ros2.scene_state import joint_values, planning_scene, standing_at_values
 from evenroad.trajectory import Limits, make_trajectory
 from evenroad.trajectory.formats import joint_trajectory
-from tests_peers.ros2_messages import FOLDER, Cdr, _header, _module, _pose, _sent, _written
-from tests_peers.ros2_messages import _folder as _folder
+from tests_peers.ros2_messages import Cdr, _header, _pose, _sent, _written
 from tests_peers.ros2_messages import make as make
 from tests_peers.ros2_messages import store as store
 
@@ -101,7 +100,7 @@ def test_a_planning_scene_is_the_scene_that_it_says(store, make):
     robot = load_robot("ur5")
     allowed = {("base_link", "table"), ("table", "wedge")}
     message = _planning_scene(make, START, _things(make), allowed=allowed)
-    scene = _module("messages").planning_scene(_sent(store, message), robot)
+    scene = planning_scene(_sent(store, message), robot)
     assert scene.name == "today"
     assert [each.name for each in scene.obstacles] == ["table", "posts/0", "posts/1", "wedge"]
     assert scene.allowed == {("base_link", "table")}
@@ -122,7 +121,7 @@ def test_what_the_robot_holds_is_held(store, make):
     solid, pose = _solid(make, 1, (0.1, 0.1, 0.2)), _pose(make, (0.0, 0.0, 0.1))
     box = _collision_object(make, "box", [solid], [pose], frame="tool0")
     message = _planning_scene(make, START, _things(make), attached=[("tool0", box, ["wrist_3_link"])])
-    scene = _module("messages").planning_scene(_sent(store, message), robot)
+    scene = planning_scene(_sent(store, message), robot)
     [held] = scene.attached
     assert (held.name, held.link, held.touches) == ("box", "tool0", ("wrist_3_link",))
     assert held.body.pose.xyz == (0.0, 0.0, 0.1)
@@ -132,9 +131,11 @@ def test_the_arm_planner_answers_with_a_trajectory_that_is_free(store, make):
     robot = load_robot("ur5")
     goal = (1.2, -1.5, 1.7, -1.3, -1.57, 0.3)
     message = _sent(store, _planning_scene(make, START, _things(make), allowed={("base_link", "table")}))
-    sent, why = _module("arm_planner").answer(make, message, robot, ",".join(map(str, goal)), speed=0.5)
-    assert "path" in why
-    trajectory = _sent(store, sent)
+    there = planning_scene(message, robot)
+    standing, start = standing_at_values(joint_values(message.robot_state.joint_state, robot, "it"), robot, "it")
+    answer = plan_for_arm(ArmQuery(standing, there, start, [goal], speed=0.5))
+    assert answer.outcome == "SUCCESS"
+    trajectory = _sent(store, joint_trajectory(answer.trajectory, make))
     assert trajectory.joint_names[: len(START)] == list(START)
     q = np.array([point.positions for point in trajectory.points])[:, : len(START)]
     np.testing.assert_allclose(q[[0, -1]], [[*START.values()], goal], atol=1e-6)
@@ -155,10 +156,11 @@ def test_the_arm_planner_answers_with_a_trajectory_that_is_free(store, make):
 
 def test_no_path_is_an_answer(store, make):
     robot = load_robot("ur5")
-    message = _planning_scene(make, START, _things(make))
-    sent, why = _module("arm_planner").answer(make, message, robot, "0,-1.9,1.6,-1.3,-1.57,0")
-    assert sent is None
-    assert "table" in why
+    scene = planning_scene(_planning_scene(make, START, _things(make)), robot)
+    answer = plan_for_arm(ArmQuery(robot, scene, [*START.values()], ["0,-1.9,1.6,-1.3,-1.57,0"]))
+    assert answer.trajectory is None
+    assert answer.outcome == "START_STATE_IN_COLLISION"
+    assert "table" in answer.message
 
 
 def _far(make):
@@ -175,7 +177,7 @@ def test_padded_links_and_objects_in_the_frames_of_links_are_honoured(store, mak
     solid, pose = _solid(make, 1, (0.1, 0.1, 0.2)), _pose(make, (0.0, 0.0, 0.3))
     box = _collision_object(make, "box", [solid], [pose], frame="tool0")
     message = _planning_scene(make, START, [box], link_padding=[padding])
-    scene = _module("messages").planning_scene(_sent(store, message), robot)
+    scene = planning_scene(_sent(store, message), robot)
     assert scene.padding == {"tool0": 0.01}
     tip = link_poses(robot, [[*START.values()]])[0, robot.links.index("tool0")]
     np.testing.assert_allclose(scene.obstacles[0].xyz, (tip @ (0.0, 0.0, 0.3, 1.0))[:3])
@@ -199,19 +201,11 @@ def test_what_would_be_left_out_is_refused(make, said, objects, changes):
     fields = {name: value(make) for name, value in changes.items()}
     message = _planning_scene(make, START, [each(make) for each in objects], **fields)
     with pytest.raises(EvenroadError, match=said):
-        _module("messages").planning_scene(message, load_robot("ur5"))
+        planning_scene(message, load_robot("ur5"))
 
 
 def test_a_state_that_says_too_little_is_refused(make):
     message = _planning_scene(make, {"elbow_joint": 1.0}, [])
-    with pytest.raises(InvalidValue, match="shoulder_pan_joint"):
-        _module("messages").standing(message, load_robot("ur5"))
-
-
-def test_nothing_of_ros_is_needed_until_a_node_runs():
-    code = (
-        "import sys, arm_planner, messages, evenroad.ros2.map_node;"
-        " print([m for m in ('rclpy', 'nav_msgs', 'moveit_msgs', 'rosbags') if m in sys.modules])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], cwd=FOLDER, capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    values = joint_values(message.robot_state.joint_state, load_robot("ur5"), "the scene")
+    with pytest.raises(InvalidValue, match="the scene does not say where shoulder_pan_joint"):
+        standing_at_values(values, load_robot("ur5"), "the scene")

@@ -79,7 +79,6 @@ INSTEAD = {
     "make *": Instead(None, "a Makefile's target: that there is such a one is tested"),
     "python3 -m venv *": Instead(None, "an environment: the release check makes one"),
     "pip install *": Instead(None, "needs a network: the release check tries it"),
-    "python examples/ros2/*": Instead(None, "nodes of ROS 2: tests_peers feeds them messages"),
     "evenroad ros2 *": Instead(None, "a node runs until it is stopped: tests/ros2 starts it"),
     "python -m studies.benchmarks*": Instead(None, "minutes to hours: that there is such a one is tested"),
     "evenroad bench paper --runs 400 *": Instead(f"evenroad bench paper {TASTE} paper.db", "18 minutes"),

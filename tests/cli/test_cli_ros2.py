@@ -16,7 +16,7 @@ def test_words_behind_ros_args_are_those_of_ros():
 
 
 def test_other_words_are_refused():
-    with pytest.raises(InvalidValue, match="NODE must be one of map"):
+    with pytest.raises(InvalidValue, match="NODE must be one of map, arm"):
         read_options("ros2", Ros2, ["car"])
     with pytest.raises(InvalidValue, match="no use for the word 'robot_radius:=0.25'"):
         read_options("ros2", Ros2, ["map", "robot_radius:=0.25"])

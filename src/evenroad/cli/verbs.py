@@ -24,7 +24,7 @@ VERBS = {
     "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "build a roadmap of an arm's joints, for many plans"),
     "view": ("evenroad.cli.view:View", "show a plan in the browser, or write it as HTML, PNG or GIF"),
     "send": ("evenroad.cli.send:Send", "send a plan to a UR arm, checked; a dry run without --go"),
-    "ros2": ("evenroad.cli.ros2:Ros2", "run a node of ROS 2 that plans on maps"),
+    "ros2": ("evenroad.cli.ros2:Ros2", "run a node of ROS 2 that plans on maps, or for an arm"),
     "points": ("evenroad.cli.points:Points", "write evenly spread points, for sampling-based planners"),
     "measure": ("evenroad.cli.measure:Measure", "show how evenly the points of a file are spread"),
     "certify": (

@@ -1,5 +1,6 @@
-"""A node of ROS 2, ``evenroad ros2 map``, and the messages that it takes and gives.
+"""Nodes of ROS 2, ``evenroad ros2 map`` and ``evenroad ros2 arm``, and the messages that they take and give.
 
-Only ``node.py`` and ``map_node.py`` need ROS, and import it when a node starts.  The other modules read values that
-have the fields of messages, of any library, and make messages by a maker that they are given.
+Only ``node.py``, ``map_node.py``, ``arm_node.py`` and ``follow.py`` need ROS, and import it when a node starts.  The
+other modules read values that have the fields of messages, of any library, and make messages by a maker that they are
+given.
 """

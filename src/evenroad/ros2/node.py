@@ -83,9 +83,20 @@ class Node:
         """Return a publisher; who comes later gets the last message of a latched one."""
         return self.ros.create_publisher(ros_type(kind), topic, quality(latched=latched))
 
-    def subscribe(self, kind: str, topic: str, take: Callable[[Message], object], *, latched: bool = False) -> None:
-        """Call a function with each message of a topic; what it refuses is logged."""
-        self.ros.create_subscription(ros_type(kind), topic, self.guarded(take), quality(latched=latched))
+    def subscribe(
+        self,
+        kind: str,
+        topic: str,
+        take: Callable[[Message], object],
+        *,
+        latched: bool = False,
+        lossy: bool = False,
+    ) -> None:
+        """Call a function with each message of a topic; what it refuses is logged.
+
+        A lossy one also takes messages of publishers that send without acknowledgement, as many sensors do.
+        """
+        self.ros.create_subscription(ros_type(kind), topic, self.guarded(take), quality(latched=latched, lossy=lossy))
 
     def plans_for(self, kind: str, topic: str, take: Callable[[Message], object]) -> None:
         """Call a function that plans with each message of a topic, while others are taken."""
@@ -169,11 +180,12 @@ class Node:
         self.ros.create_timer(1.0, report)
 
 
-def quality(*, latched: bool = False) -> Message:
-    """Return reliable quality of service; that of maps in nav2 is latched: who comes later gets the last message."""
+def quality(*, latched: bool = False, lossy: bool = False) -> Message:
+    """Return quality of service, reliable unless lossy; of a latched topic who comes later gets the last message."""
     qos = import_module("rclpy.qos")
     kept = qos.DurabilityPolicy.TRANSIENT_LOCAL if latched else qos.DurabilityPolicy.VOLATILE
-    return qos.QoSProfile(depth=1 if latched else 10, durability=kept, reliability=qos.ReliabilityPolicy.RELIABLE)
+    sent = qos.ReliabilityPolicy.BEST_EFFORT if lossy else qos.ReliabilityPolicy.RELIABLE
+    return qos.QoSProfile(depth=1 if latched else 10, durability=kept, reliability=sent)
 
 
 def run_node(name: str, made: Callable[[Node], object], arguments: Sequence[str]) -> int:
