@@ -103,6 +103,23 @@ def test_a_box_in_the_hand_is_carried_to_a_pose_of_the_environment(world, kind):
     assert np.abs(np.diff(actions[:, :6], axis=0)).max() < 3.2 * 0.5 / env.control_freq
 
 
+def test_joints_of_other_names_are_taken_in_their_order_or_by_a_table(world):
+    env = OfRobosuite(world)
+    env.sim.data.qpos = np.concatenate([[9.0, 9.0, 9.0], HOME])
+    env.robots[0].robot_joints[:] = [f"robot0_joint{i}" for i in range(6)]
+    arm = robosuite(env)
+    np.testing.assert_array_equal(start_of(arm, world), HOME)
+    result = plan_to_pose(arm, world, BASE @ er.Pose((0.5, -0.2, 0.4), rpy=(np.pi, 0, 0.3)), tip="tool0")
+    assert drive(arm, result, speed=0.5)[0] < 1e-4
+    np.testing.assert_allclose(env.q, result.path[-1], atol=1e-4)
+    backwards = {f"joint{i}": name for i, name in enumerate(reversed(world.robot.group))}
+    np.testing.assert_array_equal(start_of(robosuite(env, names=backwards), world), env.q[::-1])
+    with pytest.raises(UnknownName, match="joint of the environment: 'joint7'"):
+        robosuite(env, names={"joint7": "elbow_joint"})
+    with pytest.raises(UnknownName, match=r"it has joint0, .*: give names=\{'joint0': 'shoulder_pan_joint', ...\}"):
+        start_of(robosuite(env, names={"joint1": "elbow_joint"}), world)
+
+
 def test_what_does_not_fit_is_refused(world):
     with pytest.raises(InvalidValue, match="one scene"):
         start_of(maniskill(OfManiSkill(world, scenes=2)), world)

@@ -6,7 +6,7 @@ Neither of them is imported: an environment of yours is all that is needed.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -16,7 +16,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad._checks import require_known
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.errors import InvalidValue, shown
+from evenroad.errors import InvalidValue, UnknownName, listed, shown
 from evenroad.geometry.pose import Pose
 from evenroad.planning.plan import plan
 from evenroad.planning.result import PlanResult
@@ -35,7 +35,8 @@ class SimulatedArm:
     Attributes
     ----------
     names : tuple of str
-        Joints that are moved, in the order of the targets, as the robot's file calls them.
+        Joints that are moved, in the order of the targets.  Where they differ from those of the robot's file and are
+        as many as the world plans for, they are the same joints in the same order.
     positions : callable
         Returns where they are, (joints,) [rad or m].
     base : callable
@@ -53,7 +54,9 @@ class SimulatedArm:
     period: float
 
 
-def maniskill(env: Environment, joints: Sequence[str] | None = None) -> SimulatedArm:
+def maniskill(
+    env: Environment, joints: Sequence[str] | None = None, names: Mapping[str, str] | None = None
+) -> SimulatedArm:
     """Return the arm of a ManiSkill environment, made with ``control_mode="pd_joint_pos"`` and one scene.
 
     Parameters
@@ -63,6 +66,8 @@ def maniskill(env: Environment, joints: Sequence[str] | None = None) -> Simulate
     joints : sequence of str, optional
         Joints of the arm's controller, in its order.  Default: the first ones, seven of a Panda, that is all but those
         whose names speak of a finger or a gripper.
+    names : mapping of str to str, optional
+        The environment's joints -> those of the robot's file, where they differ in more than names.
 
     Raises
     ------
@@ -84,14 +89,19 @@ def maniskill(env: Environment, joints: Sequence[str] | None = None) -> Simulate
         return Pose((px, py, pz), xyzw=(x, y, z, w))
 
     return SimulatedArm(
-        chosen, lambda: _row(robot.get_qpos(), len(active))[columns], base, env.step, 1.0 / float(inner.control_freq)
+        _called(chosen, names),
+        lambda: _row(robot.get_qpos(), len(active))[columns],
+        base,
+        env.step,
+        1.0 / float(inner.control_freq),
     )
 
 
-def robosuite(env: Environment, robot: int = 0) -> SimulatedArm:
+def robosuite(env: Environment, robot: int = 0, names: Mapping[str, str] | None = None) -> SimulatedArm:
     """Return an arm of a robosuite environment whose controller is ``JOINT_POSITION`` with ``input_type: absolute``.
 
-    Joints have no prefix here: ``joint1`` of ``robot0_joint1``.
+    Joints have no prefix here: ``joint1`` of ``robot0_joint1``.  Of the extra's Panda this is ``panda_joint1``: as many
+    joints with other names are taken in their order.
 
     Parameters
     ----------
@@ -99,19 +109,30 @@ def robosuite(env: Environment, robot: int = 0) -> SimulatedArm:
         As ``robosuite.make("Lift", ...)`` gives it.
     robot : int
         Number of the arm.
+    names : mapping of str to str, optional
+        Joints as here -> those of the robot's file, where the order differs.
+
+    Raises
+    ------
+    UnknownName
+        If the mapping has a joint that the environment does not have.
     """
     arm, sim = env.robots[robot], env.sim
-    names = tuple(arm.robot_joints)
-    columns = [sim.model.get_joint_qpos_addr(name) for name in names]
+    joints = tuple(arm.robot_joints)
+    columns = [sim.model.get_joint_qpos_addr(name) for name in joints]
     root = arm.robot_model.root_body
 
     def base() -> Pose:
         x, y, z = _row(sim.data.get_body_xpos(root), 3).tolist()
         return Pose((x, y, z), tuple(_row(np.reshape(sim.data.get_body_xmat(root), -1), 9).tolist()))
 
-    short = tuple(name.removeprefix(f"robot{robot}_") for name in names)
+    short = tuple(name.removeprefix(f"robot{robot}_") for name in joints)
     return SimulatedArm(
-        short, lambda: np.array(sim.data.qpos, dtype=np.float64)[columns], base, env.step, 1.0 / float(env.control_freq)
+        _called(short, names),
+        lambda: np.array(sim.data.qpos, dtype=np.float64)[columns],
+        base,
+        env.step,
+        1.0 / float(env.control_freq),
     )
 
 
@@ -121,12 +142,9 @@ def start_of(arm: SimulatedArm, world: ArmWorld) -> Floats:
     Raises
     ------
     UnknownName
-        If a joint of the group is none that the environment moves.
+        If a joint of the group is none that the environment moves, and it moves another number of joints.
     """
-    values = dict(zip(arm.names, arm.positions().tolist(), strict=True))
-    for name in world.robot.group:
-        require_known("joint of the environment:", name, values)
-    return np.array([values[name] for name in world.robot.group])
+    return arm.positions()[_columns(arm, world.robot.group)]
 
 
 def plan_to_pose(
@@ -193,7 +211,9 @@ def drive(
         If there is no path.
     """
     trajectory, fingers = result.trajectory(**options), np.atleast_1d(np.array(gripper, float))
-    columns = [trajectory.names.index(name) if name in trajectory.names else -1 for name in arm.names]
+    columns = np.full(len(arm.names), -1)
+    moved = _columns(arm, trajectory.names)
+    columns[moved] = np.arange(len(moved))
     standing = arm.positions()
     count = math.ceil(trajectory.duration / arm.period)
     answer: object = None
@@ -202,11 +222,30 @@ def drive(
         *[trajectory.duration] * settle,
     ]:
         wanted = np.array([np.interp(time, trajectory.times, column) for column in trajectory.positions.T])
-        targets = np.where(np.array(columns) < 0, standing, wanted[columns])
+        targets = np.where(columns < 0, standing, wanted[columns])
         answer = arm.step(np.concatenate([targets, fingers]))
-    there = dict(zip(arm.names, arm.positions().tolist(), strict=True))
-    off = [abs(there[name] - last) for name, last in zip(trajectory.names, trajectory.positions[-1], strict=True)]
-    return max(off), answer
+    return float(np.abs(arm.positions()[moved] - trajectory.positions[-1]).max()), answer
+
+
+def _columns(arm: SimulatedArm, group: Sequence[str]) -> list[int]:
+    """Return which of an arm's joints are those of a group: by name, or all of them in order."""
+    known = {name: i for i, name in enumerate(arm.names)}
+    if len(arm.names) == len(group) and known.keys().isdisjoint(group):
+        return list(range(len(group)))
+    for name in group:
+        if name not in known:
+            raise UnknownName(
+                f"unknown joint of the environment: {shown(name)}; it has {listed(arm.names)}: give names="
+                f"{{{shown(arm.names[0])}: {shown(group[0])}, ...}} for each joint of the group"
+            )
+    return [known[name] for name in group]
+
+
+def _called(joints: Sequence[str], names: Mapping[str, str] | None) -> tuple[str, ...]:
+    """Return joints by the names that a mapping gives them."""
+    for name in names or ():
+        require_known("joint of the environment:", name, joints)
+    return tuple((names or {}).get(name, name) for name in joints)
 
 
 def _chosen(joints: Sequence[str] | None, active: Sequence[str]) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -50,8 +51,9 @@ def read_mjcf(file: RobotFile) -> RobotDescription:
     mujoco = require_extra("mujoco", "mjcf", f"{file.path} is an MJCF, which")
     try:
         spec = mujoco.MjSpec.from_file(str(file.path))
-        # Memory for a simulation, which is none of ours.
-        spec.memory = -1
+        # Memory for a simulation, which is none of ours; before 3.4 MuJoCo took no such number.
+        with suppress(TypeError):
+            spec.memory = -1
         model = spec.compile()
     except (ValueError, RuntimeError) as error:
         said = " ".join(str(error).split())

@@ -248,7 +248,7 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
         if not 0.0 < fastest < math.inf:
             raise InvalidValue(
                 f"joint {name!r} of {robot.name!r} has no velocity limit: give it a max_velocity > 0 in a"
-                " joint_limits.yaml"
+                f" joint_limits.yaml, by a line such as joint_limits: {{{name}: {{max_velocity: 2.0}}}}"
             )
         velocity.append(fastest * given.scaling.get("velocity", 1.0))
         push = said.get("acceleration", joint.acceleration)
