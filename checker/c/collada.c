@@ -9,7 +9,7 @@ enum { DEEPEST = 50, MOST_READINGS = 20 };
 typedef struct {
   const Entry* root;
   const char* path;
-  Mesh* mesh;
+  Faces* faces;
   size_t* left;
 } Reader;
 
@@ -95,7 +95,7 @@ static Vector corner(const Reader* in, const Corners* of, size_t number) {
 
 static void add_polygon(const Reader* in, const Corners* of, const size_t* numbers, size_t corners) {
   for (size_t i = 2; i < corners; ++i) {
-    add_triangle(in->mesh, corner(in, of, numbers[0]), corner(in, of, numbers[(i - 1) * of->stride]),
+    add_triangle(in->faces, corner(in, of, numbers[0]), corner(in, of, numbers[(i - 1) * of->stride]),
                  corner(in, of, numbers[i * of->stride]));
   }
 }
@@ -137,7 +137,7 @@ static void add_primitive(const Reader* in, const Entry* mesh, const Entry* prim
 static void add_geometry(const Reader* in, const Entry* geometry, const Pose* pose) {
   const Entry* mesh = child_of(geometry, "mesh");
   if (!mesh) fail(BAD_INPUT, "%s: a geometry that is no mesh", in->path);
-  ++in->mesh->part; /* a closed surface may be of several primitives, one for each material */
+  ++in->faces->part; /* a closed surface may be of several primitives, one for each material */
   for (const Entry* each = mesh->child; each; each = each->next) {
     if (!strcmp(each->key, "triangles") || !strcmp(each->key, "polylist") || !strcmp(each->key, "polygons")) {
       add_primitive(in, mesh, each, pose);
@@ -193,9 +193,9 @@ static void add_node(const Reader* in, const Entry* node, const Pose* outer, int
   }
 }
 
-void read_collada(Mesh* mesh, File file, const char* path) {
+void read_collada(Faces* faces, File file, const char* path) {
   size_t left = MOST_READINGS * file.size;
-  Reader in = {parse_xml((const char*)file.data, file.size, path), path, mesh, &left};
+  Reader in = {parse_xml((const char*)file.data, file.size, path), path, faces, &left};
   double metre = 1;
   const char* unit = text_of(child_of(child_of(in.root, "asset"), "unit"), "@meter", "1");
   read_numbers(unit, &metre, 1, path);

@@ -4,21 +4,36 @@
 
 #include "certificate.h"
 
+/* Numbers of three points. */
 typedef struct {
-  Vector* corners; /* three for each triangle */
-  size_t triangles, room;
-  size_t part, *parts; /* of the file, for each triangle: pieces are within one */
-  size_t distinct;     /* corners after `keep_distinct`, which leaves them sorted */
-  /* From `find_pieces`: for each triangle the first one of its piece, NONE for one that repeats an earlier one,
-   * and whether that piece is closed. */
-  size_t* piece;
-  bool* closed;
+  size_t corner[3];
+} Triangle;
+
+/* Triangles that hang together by equal corners: `count` of the members from `begin` on, the earliest one first. */
+typedef struct {
+  size_t begin, count;
+  bool closed;
+} Piece;
+
+typedef struct {
+  Vector* points; /* the distinct corners, of each part of a file by itself; or those of a cloud */
+  Triangle* triangles;
+  size_t point_count, triangle_count;
+  Piece* pieces; /* from `find_pieces`; a triangle that repeats an earlier one is in none */
+  size_t piece_count, *members;
 } Mesh;
 
-Mesh* read_mesh(File file, const char* path, const double scale[3]);
-void read_collada(Mesh* mesh, File file, const char* path);
-void add_triangle(Mesh* mesh, Vector a, Vector b, Vector c);
-void keep_distinct(Mesh* mesh);
+/* Triangles as a file has them: three corners each, and the part of the file that each is in. */
+typedef struct {
+  Vector* corners;
+  size_t *parts, count, room, part;
+} Faces;
+
+void add_triangle(Faces* faces, Vector a, Vector b, Vector c);
+void read_collada(Faces* faces, File file, const char* path);
+
+/* The mesh of a file; if it is convex, all of its parts are one. */
+Mesh* read_mesh(File file, const char* path, const double scale[3], bool convex);
 void find_pieces(Mesh* mesh);
 
 enum { BOX, SPHERE, CYLINDER, CAPSULE, MESH, PLANE, CLOUD, KINDS };
@@ -27,7 +42,7 @@ extern const char* const kind_names[KINDS];
 typedef struct {
   int kind;
   double size[3]; /* of a box; radius and length of others */
-  Mesh* mesh;     /* or the points of a cloud, as its distinct corners */
+  Mesh* mesh;     /* or the points of a cloud */
   bool convex;
   double clearance;
   Pose pose; /* in its link, or in the scene */

@@ -4,20 +4,17 @@
 
 #include "inputs.h"
 
-void add_triangle(Mesh* mesh, Vector a, Vector b, Vector c) {
-  if (mesh->triangles == mesh->room) {
-    mesh->room = 2 * mesh->room + 16;
-    Vector* corners = take(mesh->room, 3 * sizeof *corners);
-    size_t* parts = take(mesh->room, sizeof *parts);
-    if (mesh->triangles) {
-      memcpy(corners, mesh->corners, mesh->triangles * 3 * sizeof *corners);
-      memcpy(parts, mesh->parts, mesh->triangles * sizeof *parts);
-    }
-    mesh->corners = corners;
-    mesh->parts = parts;
+void add_triangle(Faces* faces, Vector a, Vector b, Vector c) {
+  if (faces->count == faces->room) {
+    Faces old = *faces;
+    faces->room = 2 * old.room + 16;
+    faces->corners = take(faces->room, 3 * sizeof *faces->corners);
+    faces->parts = take(faces->room, sizeof *faces->parts);
+    if (old.count) memcpy(faces->corners, old.corners, old.count * 3 * sizeof *old.corners);
+    if (old.count) memcpy(faces->parts, old.parts, old.count * sizeof *old.parts);
   }
-  mesh->parts[mesh->triangles] = mesh->part;
-  Vector* to = mesh->corners + 3 * mesh->triangles++;
+  faces->parts[faces->count] = faces->part;
+  Vector* to = faces->corners + 3 * faces->count++;
   to[0] = a;
   to[1] = b;
   to[2] = c;
@@ -29,7 +26,7 @@ static Vector vector_of(const char* text, const char* path) {
   return (Vector){numbers[0], numbers[1], numbers[2]};
 }
 
-static void read_binary_stl(Mesh* mesh, File file) {
+static void read_binary_stl(Faces* faces, File file) {
   for (size_t i = 0; i < (file.size - 84) / 50; ++i) {
     float numbers[9];
     for (int k = 0; k < 9; ++k) {
@@ -37,7 +34,7 @@ static void read_binary_stl(Mesh* mesh, File file) {
       memcpy(numbers + k, &bits, sizeof bits);
     }
     const float* n = numbers;
-    add_triangle(mesh, (Vector){n[0], n[1], n[2]}, (Vector){n[3], n[4], n[5]}, (Vector){n[6], n[7], n[8]});
+    add_triangle(faces, (Vector){n[0], n[1], n[2]}, (Vector){n[3], n[4], n[5]}, (Vector){n[6], n[7], n[8]});
   }
 }
 
@@ -55,7 +52,7 @@ static char* after(char* line, const char* word) {
   return !strncmp(line, word, size) && strchr(" \t", line[size]) ? line + size : NULL;
 }
 
-static void read_ascii_stl(Mesh* mesh, char* text, const char* path) {
+static void read_ascii_stl(Faces* faces, char* text, const char* path) {
   Vector corners[3] = {{0, 0, 0}};
   size_t count = 0;
   while (*text) {
@@ -66,22 +63,22 @@ static void read_ascii_stl(Mesh* mesh, char* text, const char* path) {
       continue;
     }
     corners[count++ % 3] = vector_of(numbers, path);
-    if (count % 3 == 0) add_triangle(mesh, corners[0], corners[1], corners[2]);
+    if (count % 3 == 0) add_triangle(faces, corners[0], corners[1], corners[2]);
   }
   if (count % 3) fail(BAD_INPUT, "%s: a triangle without three corners", path);
 }
 
 /* The corner that a face names: counted from 1, or from the last one backwards. */
-static Vector corner_of(const char* text, char** end, const Mesh* vertices, const char* path) {
-  long index = strtol(text, end, 10), count = (long)vertices->triangles;
+static Vector corner_of(const char* text, char** end, const Faces* vertices, const char* path) {
+  long index = strtol(text, end, 10), count = (long)vertices->count;
   if (*end == text || index == 0 || index > count || index < -count)
     fail(BAD_INPUT, "%s: no corner: %.20s", path, text);
   *end += strcspn(*end, " \t");
   return vertices->corners[3 * (index > 0 ? index - 1 : count + index)];
 }
 
-static void read_obj(Mesh* mesh, char* text, const char* path) {
-  Mesh vertices = {0}; /* each as a triangle, thrice */
+static void read_obj(Faces* faces, char* text, const char* path) {
+  Faces vertices = {0}; /* each as a triangle, thrice */
   while (*text) {
     char *line = next_line(&text), *numbers = after(line, "v"), *face = after(line, "f");
     if (numbers) {
@@ -96,7 +93,7 @@ static void read_obj(Mesh* mesh, char* text, const char* path) {
     int corners = 2;
     for (face += strspn(face, " \t"); *face; face += strspn(face, " \t"), ++corners) {
       Vector corner = corner_of(face, &face, &vertices, path);
-      add_triangle(mesh, first, previous, corner);
+      add_triangle(faces, first, previous, corner);
       previous = corner;
     }
     if (corners < 3) fail(BAD_INPUT, "%s: a face of two corners", path);
@@ -112,123 +109,65 @@ static bool ends_with(const char* path, const char* suffix) {
   return true;
 }
 
-Mesh* read_mesh(File file, const char* path, const double scale[3]) {
+/* A corner of a triangle, by its first coordinate; the others are looked up where these are equal. */
+typedef struct {
+  double x;
+  size_t corner;
+} Place;
+
+static const Faces* sorted_faces; /* what `by_place` looks up: qsort passes nothing else */
+
+static int by_place(const void* a, const void* b) {
+  const Place *p = a, *q = b;
+  if (p->x != q->x) return p->x < q->x ? -1 : 1;
+  const Vector *v = sorted_faces->corners + p->corner, *w = sorted_faces->corners + q->corner;
+  if (v->y != w->y) return v->y < w->y ? -1 : 1;
+  if (v->z != w->z) return v->z < w->z ? -1 : 1;
+  size_t part = sorted_faces->parts[p->corner / 3], other = sorted_faces->parts[q->corner / 3];
+  return (part > other) - (part < other);
+}
+
+/* Number the corners: equal ones of a part are one point. */
+static Mesh* numbered(const Faces* faces) {
   Mesh* mesh = take(1, sizeof *mesh);
-  char* text = (char*)file.data;
-  bool stl = ends_with(path, ".stl"), is_text = strlen(text) == file.size;
-  if (stl && file.size > 84 && (file.size - 84) / 50 == little_endian(file.data + 80, 4) &&
-      (file.size - 84) % 50 == 0) {
-    read_binary_stl(mesh, file);
-  } else if (stl && is_text) {
-    read_ascii_stl(mesh, copied(text, file.size), path);
-  } else if (ends_with(path, ".obj") && is_text) {
-    read_obj(mesh, copied(text, file.size), path);
-  } else if (ends_with(path, ".dae")) {
-    read_collada(mesh, file, path);
-  } else {
-    fail(BAD_INPUT, "%s: no STL, OBJ or COLLADA file", path);
-  }
-  if (!mesh->triangles) fail(BAD_INPUT, "%s: no triangles", path);
-  for (size_t i = 0; i < 3 * mesh->triangles; ++i) {
-    Vector* corner = mesh->corners + i;
-    *corner = (Vector){scale[0] * corner->x, scale[1] * corner->y, scale[2] * corner->z};
-    if (!(length(*corner) < 1e9)) fail(BAD_INPUT, "%s: a corner that is no number", path);
+  size_t count = 3 * faces->count;
+  Place* places = take(count, sizeof *places);
+  mesh->triangle_count = faces->count;
+  mesh->triangles = take(faces->count, sizeof *mesh->triangles);
+  mesh->points = take(count, sizeof *mesh->points);
+  for (size_t i = 0; i < count; ++i) places[i] = (Place){faces->corners[i].x, i};
+  sorted_faces = faces;
+  qsort(places, count, sizeof *places, by_place);
+  for (size_t i = 0; i < count; ++i) {
+    size_t corner = places[i].corner;
+    if (!i || by_place(places + i - 1, places + i)) mesh->points[mesh->point_count++] = faces->corners[corner];
+    mesh->triangles[corner / 3].corner[corner % 3] = mesh->point_count - 1;
   }
   return mesh;
 }
 
-/* A corner of a triangle, or an edge between two numbered corners. */
-typedef struct {
-  Vector at;
-  size_t triangle, corner, part, ends[2];
-} Part;
-
-static int by_place(const void* a, const void* b) {
-  const Vector *p = a, *q = b; /* or parts, which begin with their places */
-  if (p->x != q->x) return p->x < q->x ? -1 : 1;
-  if (p->y != q->y) return p->y < q->y ? -1 : 1;
-  return (p->z > q->z) - (p->z < q->z);
-}
-
-void keep_distinct(Mesh* mesh) {
-  qsort(mesh->corners, 3 * mesh->triangles, sizeof *mesh->corners, by_place);
-  for (size_t i = 0; i < 3 * mesh->triangles; ++i) {
-    bool same = i && !by_place(mesh->corners + mesh->distinct - 1, mesh->corners + i);
-    if (!same) mesh->corners[mesh->distinct++] = mesh->corners[i];
+Mesh* read_mesh(File file, const char* path, const double scale[3], bool convex) {
+  Faces faces = {0};
+  char* text = (char*)file.data;
+  bool stl = ends_with(path, ".stl"), is_text = strlen(text) == file.size;
+  if (stl && file.size > 84 && (file.size - 84) / 50 == little_endian(file.data + 80, 4) &&
+      (file.size - 84) % 50 == 0) {
+    read_binary_stl(&faces, file);
+  } else if (stl && is_text) {
+    read_ascii_stl(&faces, copied(text, file.size), path);
+  } else if (ends_with(path, ".obj") && is_text) {
+    read_obj(&faces, copied(text, file.size), path);
+  } else if (ends_with(path, ".dae")) {
+    read_collada(&faces, file, path);
+  } else {
+    fail(BAD_INPUT, "%s: no STL, OBJ or COLLADA file", path);
   }
-}
-
-static int by_part(const void* a, const void* b) {
-  const Part *p = a, *q = b;
-  return p->part != q->part ? (p->part < q->part ? -1 : 1) : by_place(a, b);
-}
-
-static int by_ends(const void* a, const void* b) {
-  const size_t *p = ((const Part*)a)->ends, *q = ((const Part*)b)->ends;
-  if (p[0] != q[0]) return p[0] < q[0] ? -1 : 1;
-  return (p[1] > q[1]) - (p[1] < q[1]);
-}
-
-static int by_corners(const void* a, const void* b) {
-  const Part *p = a, *q = b;
-  int order = by_ends(p, q);
-  if (!order) order = (p->corner > q->corner) - (p->corner < q->corner);
-  return order ? order : (p->triangle > q->triangle) - (p->triangle < q->triangle);
-}
-
-/* Leave triangles with the corners of an earlier one out of the pieces: two of them would hide what is inside. */
-static void leave_out_equal(Mesh* mesh, const size_t* number) {
-  Part* parts = take(mesh->triangles, sizeof *parts);
-  for (size_t i = 0; i < mesh->triangles; ++i) {
-    size_t a = number[3 * i], b = number[3 * i + 1], c = number[3 * i + 2];
-    size_t low = a < b ? a : b, high = a < b ? b : a;
-    if (c < low) low = c;
-    if (c > high) high = c;
-    parts[i] = (Part){.triangle = i, .corner = high, .ends = {low, a + b + c - low - high}};
+  if (!faces.count) fail(BAD_INPUT, "%s: no triangles", path);
+  for (size_t i = 0; i < 3 * faces.count; ++i) {
+    Vector* corner = faces.corners + i;
+    *corner = (Vector){scale[0] * corner->x, scale[1] * corner->y, scale[2] * corner->z};
+    if (!(length(*corner) < 1e9)) fail(BAD_INPUT, "%s: a corner that is no number", path);
+    if (convex) faces.parts[i / 3] = 0;
   }
-  qsort(parts, mesh->triangles, sizeof *parts, by_corners);
-  for (size_t i = 1; i < mesh->triangles; ++i) {
-    bool same = !by_ends(parts + i - 1, parts + i) && parts[i - 1].corner == parts[i].corner;
-    if (same) mesh->piece[parts[i].triangle] = NONE;
-  }
-}
-
-static size_t first_of(size_t* piece, size_t i) {
-  while (piece[i] != i) i = piece[i] = piece[piece[i]];
-  return i;
-}
-
-void find_pieces(Mesh* mesh) {
-  if (mesh->piece) return;
-  size_t count = 3 * mesh->triangles, edges = 0;
-  Part* parts = take(count, sizeof *parts);
-  size_t* number = take(count, sizeof *number);
-  mesh->piece = take(mesh->triangles, sizeof *mesh->piece);
-  mesh->closed = take(mesh->triangles, sizeof *mesh->closed);
-  for (size_t i = 0; i < mesh->triangles; ++i) mesh->piece[i] = i;
-  for (size_t i = 0; i < count; ++i) parts[i] = (Part){mesh->corners[i], i / 3, i, mesh->parts[i / 3], {0, 0}};
-  qsort(parts, count, sizeof *parts, by_part);
-  for (size_t i = 0; i < count; ++i) {
-    bool same = i && !by_part(parts + i - 1, parts + i);
-    number[parts[i].corner] = same ? number[parts[i - 1].corner] : i;
-    if (!same) continue;
-    size_t a = first_of(mesh->piece, parts[i - 1].triangle), b = first_of(mesh->piece, parts[i].triangle);
-    mesh->piece[a < b ? b : a] = a < b ? a : b;
-  }
-  for (size_t i = 0; i < mesh->triangles; ++i) {
-    mesh->piece[i] = first_of(mesh->piece, i);
-    mesh->closed[i] = true;
-  }
-  leave_out_equal(mesh, number);
-  for (size_t i = 0; i < count; ++i) {
-    size_t a = number[i], b = number[i % 3 == 2 ? i - 2 : i + 1];
-    if (mesh->piece[i / 3] == NONE) continue;
-    parts[edges++] = (Part){.triangle = i / 3, .ends = {a < b ? a : b, a < b ? b : a}};
-  }
-  qsort(parts, edges, sizeof *parts, by_ends);
-  for (size_t i = 0, next; i < edges; i = next) {
-    for (next = i + 1; next < edges && !by_ends(parts + i, parts + next);) ++next;
-    bool edge = parts[i].ends[0] != parts[i].ends[1];
-    if (edge && (next - i) % 2) mesh->closed[mesh->piece[parts[i].triangle]] = false;
-  }
+  return numbered(&faces);
 }

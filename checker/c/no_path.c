@@ -62,18 +62,18 @@ static bool has_distance(const Solid* solid) {
 /* The distance of a point from a solid; less than 0 inside. */
 static double distance(const Solid* solid, Vector point) {
   double o[3] = {0, 0, 0};
-  size_t count = solid->corners == 8 ? 3 : 2;
+  const Vector *points = solid->points, *last = points + solid->point_count - 1;
+  size_t count = solid->point_count == 8 ? 3 : 2;
+  Vector from = difference(point, scaled(0.5, sum(points[0], *last)));
   if (count == 3) {
-    Vector from = difference(point, scaled(0.5, sum(solid->all[0], solid->all[7])));
     for (int i = 0; i < 3; ++i) {
-      Vector half = scaled(0.5, difference(solid->all[1 << i], solid->all[0]));
+      Vector half = scaled(0.5, difference(points[1 << i], points[0]));
       o[i] = fabs(dot(from, half)) / length(half) - length(half);
     }
   } else {
-    Vector last = solid->all[solid->corners - 1], from = difference(point, scaled(0.5, sum(solid->all[0], last)));
     double along = dot(from, solid->axis);
     o[0] = length(difference(from, scaled(along, solid->axis))) - solid->disc;
-    o[1] = fabs(along) - length(difference(last, solid->all[0])) / 2;
+    o[1] = fabs(along) - length(difference(*last, points[0])) / 2;
   }
   double outside = 0, inside = -INFINITY;
   for (size_t i = 0; i < count; ++i) {
@@ -106,11 +106,13 @@ static double from_triangle(Vector point, const Vector* c) {
 static bool is_inside_surface(const Solid* solid, const Ball* ball) {
   find_pieces(solid->shape->mesh);
   const Mesh* mesh = solid->shape->mesh;
-  for (size_t piece = 0; piece < mesh->triangles; ++piece) {
-    if (mesh->piece[piece] != piece || !mesh->closed[piece]) continue;
-    double nearest = INFINITY;
-    for (size_t i = piece; i < mesh->triangles; ++i) {
-      if (mesh->piece[i] == piece) nearest = fmin(nearest, from_triangle(ball->centre, solid->all + 3 * i));
+  for (size_t i = 0; i < mesh->piece_count; ++i) {
+    const Piece* piece = mesh->pieces + i;
+    double nearest = piece->closed ? INFINITY : -INFINITY;
+    for (size_t k = 0; k < piece->count && nearest >= ball->radius + LEAST; ++k) {
+      Vector c[3];
+      for (size_t n = 0; n < 3; ++n) c[n] = corner_at(solid, mesh->members[piece->begin + k], n);
+      nearest = fmin(nearest, from_triangle(ball->centre, c));
     }
     if (nearest >= ball->radius + LEAST && is_inside(ball->centre, solid, piece)) return true;
   }

@@ -7,35 +7,58 @@
 /* How far a plane reaches, about the root and below it [m]. */
 #define GROUND 100.0
 
-/* What elements of one shape have in common: how many corners, and what is about each. */
+typedef struct {
+  Vector low, high;
+} Range;
+
+/* A shape in a frame: points, which its elements have for corners, and what is about each of them. */
 typedef struct {
   const Shape* shape;
-  size_t corners;
+  Vector* points;
+  size_t point_count, elements;
   double ball, disc;
-  Vector axis;       /* of the disc, in the frame */
-  const Vector* all; /* corners of all its elements, in the frame */
-  size_t elements;
-  bool* met; /* of a mesh, the open pieces whose boxes hold a point of another body */
+  Vector axis;   /* of the disc */
+  size_t* seen;  /* for each point, the last node that has gathered it */
+  Range* ranges; /* of the pieces of a mesh, once they are asked for */
+  bool* met;     /* for each piece that is open, whether its range holds a point of another body */
 } Solid;
 
+/* A convex element of a node: the mean of its corners as halves have it, their range, and how far they reach. */
 typedef struct {
-  const Vector* corners;
-  const Solid* solid;
-  size_t order;
+  Solid* solid;
+  size_t number; /* in its solid */
+  Vector mean;
+  Range range;
+  double reach;
 } Element;
 
+/* Points that have the same about them. */
+typedef struct {
+  const Solid* solid;
+  const Vector* points;
+  size_t count;
+} Corners;
+
 typedef struct Node {
-  Element* elements;
-  size_t count, frame;
+  Solid** solids; /* of the whole node of which this one is a part */
+  size_t solid_count, frame, count;
+  Element* elements;      /* of the whole, in order, once it is halved */
+  size_t* members;        /* the elements that are in this node, ascending */
   Vector centre, half[3]; /* of the box */
   double reach;           /* the largest distance of a point from the frame's origin */
+  Corners* corners;       /* once they are asked for */
+  size_t corner_count;
   struct Node *first, *second;
-  Solid** solids; /* of a whole node */
-  size_t solid_count;
 } Node;
 
-/* The solid of a shape, where its frame is; without elements if the shape is of no size. */
+/* The solid of a shape, where its frame is. */
 Solid solid_of(const Shape* shape, const Pose* pose);
+
+/* Tell whether a solid is made of triangles that are elements; and a corner of an element. */
+bool is_surface(const Solid* solid);
+Vector corner_at(const Solid* solid, size_t element, size_t corner);
+
+void widen(Range* range, Vector at);
 
 /* The largest distance of a point of a solid from the frame's origin. */
 double reach_of(const Solid* solid);
@@ -46,7 +69,7 @@ Node* node_of(Solid** solids, size_t count, size_t frame);
 /* The first or second half of a node; NULL of a single element. */
 Node* half_of(Node* node, bool second);
 
-/* The largest value of `direction . x` over a node, or over its box. */
-double support(const Node* node, Vector direction, bool by_box);
+/* The largest values of `direction . x` over a node, or over its box, for two directions. */
+void find_supports(Node* node, const Vector directions[2], bool by_box, double supports[2]);
 
 #endif

@@ -44,7 +44,7 @@ static void find_obstacle_pairs(Model* model, Solid** obstacles) {
     Solid** left = take(count + 1, sizeof *left);
     size_t left_count = 0;
     for (size_t k = 0; k < count; ++k) {
-      if (!body->allowed[k] && obstacles[k]->elements) left[left_count++] = obstacles[k];
+      if (!body->allowed[k]) left[left_count++] = obstacles[k];
     }
     if (!left_count) continue;
     Pair* pair = model->pairs + model->pair_count++;

@@ -25,6 +25,7 @@ typedef struct {
   Task* tasks;
   size_t done, waiting, directions;
   Moved* moved;
+  Stretch stretch;
   double smallest;
 } Proof;
 
@@ -42,22 +43,21 @@ void place_frame(const Model* model, size_t i, double value, Moved* moved) {
   }
 }
 
-void place_frames(const Model* model, size_t motion, double middle, double half, Moved* moved) {
+void place_chain(const Model* model, size_t i, const Stretch* stretch, Moved* moved) {
+  if (!i || moved[i].stretch == stretch->number) return;
   const Certificate* certificate = model->certificate;
-  size_t joints = certificate->joint_count;
-  const double* points = certificate->values + motion * certificate->degree * joints;
-  moved[0] = (Moved){.pose = identity()};
-  for (size_t i = 1; i < model->frame_count; ++i) {
-    const Frame* frame = model->frames + i;
-    double p0 = points[frame->column], p2 = points[certificate->degree * joints + frame->column];
-    double p1 = certificate->degree == 2 ? points[joints + frame->column] : 0.5 * (p0 + p2);
-    double t = middle, value = (1 - t) * (1 - t) * p0 + 2 * t * (1 - t) * p1 + t * t * p2;
-    Moved* to = moved + i;
-    to->rate = frame->multiplier * 2 * ((1 - t) * (p1 - p0) + t * (p2 - p1));
-    to->change = certificate->degree == 2 ? frame->multiplier * 2 * (p0 - 2 * p1 + p2) : 0;
-    to->fastest = fabs(to->rate) + half * fabs(to->change);
-    place_frame(model, i, value, moved);
-  }
+  const Frame* frame = model->frames + i;
+  place_chain(model, frame->parent, stretch, moved);
+  size_t joints = certificate->joint_count, degree = certificate->degree;
+  const double* points = certificate->values + stretch->motion * degree * joints + frame->column;
+  double t = stretch->middle, p0 = points[0], p2 = points[degree * joints];
+  double p1 = degree == 2 ? points[joints] : 0.5 * (p0 + p2);
+  Moved* to = moved + i;
+  to->rate = frame->multiplier * 2 * ((1 - t) * (p1 - p0) + t * (p2 - p1));
+  to->change = degree == 2 ? frame->multiplier * 2 * (p0 - 2 * p1 + p2) : 0;
+  to->fastest = fabs(to->rate) + stretch->half * fabs(to->change);
+  to->stretch = stretch->number;
+  place_frame(model, i, (1 - t) * (1 - t) * p0 + 2 * t * (1 - t) * p1 + t * t * p2, moved);
 }
 
 /* The last frame that both chains have. */
@@ -97,30 +97,34 @@ static Motion motion_of(const Model* model, const Moved* moved, size_t frame, si
   return motion;
 }
 
-/* The largest value along a normal that turns as the node moves, `time` from the middle of the stretch. */
-static double farthest(const Node* node, const Moved* moved, const Motion* motion, Vector normal, double time,
-                       bool by_box) {
-  Vector seen = sum(normal, scaled(time, cross(normal, motion->turn)));
+/* The largest values of a node along a normal that turns as it moves, at both ends of a stretch. */
+static void find_farthest(Node* node, const Moved* moved, const Motion* motion, Vector normal, double half, bool by_box,
+                          double farthest[2]) {
   const Pose* pose = &moved[node->frame].pose;
-  double reach = support(node, turned_in(pose, seen), by_box);
-  return reach + dot(seen, pose->at) + time * dot(normal, motion->slide);
+  Vector seen[2], directions[2];
+  for (int i = 0; i < 2; ++i) {
+    seen[i] = sum(normal, scaled(i ? half : -half, cross(normal, motion->turn)));
+    directions[i] = turned_in(pose, seen[i]);
+  }
+  find_supports(node, directions, by_box, farthest);
+  for (int i = 0; i < 2; ++i) {
+    farthest[i] += dot(seen[i], pose->at) + (i ? half : -half) * dot(normal, motion->slide);
+  }
 }
 
 /* By how much a direction separates the nodes of a task throughout its stretch. */
-static double gap_along(const Model* model, const Moved* moved, const Task* task, double half, Vector normal,
-                        bool by_box) {
+static double gap_along(const Proof* proof, const Task* task, Vector normal, bool by_box) {
+  const Model* model = proof->model;
+  const Moved* moved = proof->moved;
+  double half = proof->stretch.half;
   size_t from = shared(model, task->first->frame, task->second->frame);
   Motion first = motion_of(model, moved, task->first->frame, from, task->first->reach, false);
   Motion second = motion_of(model, moved, task->second->frame, from, task->second->reach, false);
-  Vector back = scaled(-1, normal);
-  double least = INFINITY;
-  for (int i = -1; i <= 1; i += 2) {
-    double high = farthest(task->first, moved, &first, normal, i * half, by_box);
-    double low = -farthest(task->second, moved, &second, back, i * half, by_box);
-    least = fmin(least, low - high);
-  }
+  double high[2], low[2];
+  find_farthest(task->first, moved, &first, normal, half, by_box, high);
+  find_farthest(task->second, moved, &second, scaled(-1, normal), half, by_box, low);
   double lost = half * half / 2 * (first.strays + second.strays) + first.off + second.off;
-  return least - lost - model->pairs[task->number].margin;
+  return fmin(-low[0] - high[0], -low[1] - high[1]) - lost - model->pairs[task->number].margin;
 }
 
 static Vector between_centres(const Moved* moved, const Task* task) {
@@ -139,12 +143,15 @@ static double distance(const Kept* kept, Vector at) {
 }
 
 /* By how much a constraint may be exceeded in a stretch. */
-static double excess(const Model* model, const Moved* moved, const Kept* kept, double half) {
-  const Place* place = place_of_link(model, kept->link);
+static double excess(const Proof* proof, const Kept* kept) {
+  const Moved* moved = proof->moved;
+  const Place* place = place_of_link(proof->model, kept->link);
+  double half = proof->stretch.half;
+  place_chain(proof->model, place->frame, &proof->stretch, proof->moved);
   const Pose* pose = &moved[place->frame].pose;
   Vector part = kept->is_axis ? turned(&place->pose, kept->part) : placed(&place->pose, kept->part);
   Vector at = kept->is_axis ? turned(pose, part) : placed(pose, part);
-  Motion motion = motion_of(model, moved, place->frame, 0, length(part), kept->is_axis);
+  Motion motion = motion_of(proof->model, moved, place->frame, 0, length(part), kept->is_axis);
   Vector moves = cross(motion.turn, at);
   if (!kept->is_axis) moves = sum(moves, motion.slide);
   double worst = 0;
@@ -175,16 +182,26 @@ static void halve(const Task* task, int answer, Task halves[2]) {
 }
 
 /* Check a direction that separates the nodes of a task. */
-static void separate(Proof* proof, const Task* task, int answer, double half) {
+static void separate(Proof* proof, const Task* task, int answer) {
   const Certificate* certificate = proof->model->certificate;
   bool given = answer != ALONG_CENTRES;
+  place_chain(proof->model, task->first->frame, &proof->stretch, proof->moved);
+  place_chain(proof->model, task->second->frame, &proof->stretch, proof->moved);
   if (given && proof->directions == certificate->direction_count) fail(REFUSED, "a direction is missing");
   Vector normal = given ? direction_at(certificate, proof->directions++) : between_centres(proof->moved, task);
-  double gap = gap_along(proof->model, proof->moved, task, half, normal, answer != ALONG_BY_CORNERS);
+  double gap = gap_along(proof, task, normal, answer != ALONG_BY_CORNERS);
   if (!(gap > LEAST_GAP)) fail(REFUSED, "task %zu: a direction that does not separate (%.3g m)", proof->done, gap);
   proof->smallest = fmin(proof->smallest, gap);
   Pair* pair = proof->model->pairs + task->number;
   if (task->first == pair->first && task->second == pair->second) pair->apart = true;
+}
+
+/* Begin the stretch of a task, unless it is that of the one before. */
+static void begin_stretch(Proof* proof, const Task* task) {
+  Stretch* stretch = &proof->stretch;
+  double middle = ldexp((double)task->index + 0.5, -task->level), half = ldexp(0.5, -task->level);
+  if (stretch->motion == task->motion && stretch->middle == middle && stretch->half == half) return;
+  *stretch = (Stretch){task->motion, stretch->number + 1, middle, half};
 }
 
 /* Answer all tasks that wait, and those that they make. */
@@ -199,14 +216,13 @@ static void answer_all(Proof* proof) {
       proof->waiting += 2;
       continue;
     }
-    double half = ldexp(0.5, -task->level);
-    place_frames(proof->model, task->motion, ldexp((double)task->index + 0.5, -task->level), half, proof->moved);
+    begin_stretch(proof, task);
     if (task->first) {
-      separate(proof, task, answer, half);
+      separate(proof, task, answer);
     } else {
       const Kept* kept = certificate->kept + task->number;
       if (answer != ALONG_CENTRES) fail(REFUSED, "an answer to a constraint is a direction");
-      if (!(excess(proof->model, proof->moved, kept, half) <= LEAST_GAP)) {
+      if (!(excess(proof, kept) <= LEAST_GAP)) {
         fail(REFUSED, "%.60s is not proved to keep its constraint", kept->link);
       }
     }
@@ -233,6 +249,7 @@ double prove(Model* model) {
   Proof proof = {.model = model, .smallest = INFINITY};
   proof.tasks = take(certificate->answer_count + 1, sizeof *proof.tasks);
   proof.moved = take(model->frame_count, sizeof *proof.moved);
+  proof.moved[0].pose = identity();
   begin(&proof, model->pair_count, true);
   answer_all(&proof);
   begin(&proof, certificate->kept_count, false);

@@ -4,15 +4,22 @@
 
 #include "model.h"
 
+/* The part of a motion that is `half` to both sides of its middle. */
+typedef struct {
+  size_t motion, number; /* of each that is begun, from 1 */
+  double middle, half;
+} Stretch;
+
 /* A frame at one time, and how its joint moves it there, seen from the root. */
 typedef struct {
   Pose pose;
   Vector axis;
   double rate, change, fastest; /* of its joint: derivatives by the part of the motion, and the largest rate */
+  size_t stretch;               /* the number of that in whose middle it is */
 } Moved;
 
-/* Place all frames at the part `middle` of a motion, with rates in the stretch `half` to both sides. */
-void place_frames(const Model* model, size_t motion, double middle, double half, Moved* moved);
+/* Place a frame, and all on its chain, in the middle of a stretch, unless they are there. */
+void place_chain(const Model* model, size_t frame, const Stretch* stretch, Moved* moved);
 
 /* Place one frame, by the value of its column, behind those above it. */
 void place_frame(const Model* model, size_t frame, double value, Moved* moved);

@@ -59,7 +59,7 @@ static Mesh* mesh_of(const Entry* element, const char* urdf, Files* files) {
   bool one = !text[strcspn(text, " \t\r\n")];
   read_numbers(text, scale, one ? 1 : 3, path);
   if (one) scale[1] = scale[2] = scale[0];
-  return read_mesh(next_file(files, path), path, scale);
+  return read_mesh(next_file(files, path), path, scale, false);
 }
 
 bool read_size(Shape* shape, const Entry* entry, const char* const keys[3], const char* where) {

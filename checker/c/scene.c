@@ -27,14 +27,14 @@ static const char* file_of(const Entry* entry, const char* scene, const char* wh
   return joined(*name == '/' ? "" : folder_of(scene), name, "");
 }
 
-static Mesh* mesh_of(const Entry* entry, const char* scene, const char* where, Files* files) {
+static Mesh* mesh_of(const Entry* entry, const char* scene, const char* where, bool convex, Files* files) {
   double scale[3] = {1, 1, 1};
   const Entry* given = child_of(entry, "scale");
   bool one = given && given->kind == SCALAR;
   numbers_of(entry, "scale", scale, one ? 1 : 3, where);
   if (one) scale[1] = scale[2] = scale[0];
   const char* path = file_of(entry, scene, where);
-  return read_mesh(next_file(files, path), path, scale);
+  return read_mesh(next_file(files, path), path, scale, convex);
 }
 
 /* The points of a cloud: three numbers a line. */
@@ -42,17 +42,18 @@ static Mesh* cloud_of(const Entry* entry, const char* scene, const char* where, 
   Mesh* cloud = take(1, sizeof *cloud);
   const char* path = file_of(entry, scene, where);
   File file = next_file(files, path);
-  for (size_t i = 0; i < file.size; ++i) cloud->room += file.data[i] == '\n';
-  cloud->corners = take(cloud->room + 1, sizeof *cloud->corners);
+  size_t lines = 1;
+  for (size_t i = 0; i < file.size; ++i) lines += file.data[i] == '\n';
+  cloud->points = take(lines, sizeof *cloud->points);
   const char* line = (const char*)file.data;
   while (*line) {
     double xyz[3];
     size_t size = strcspn(line, "\n");
     read_numbers(copied(line, size), xyz, 3, path);
-    cloud->corners[cloud->distinct++] = (Vector){xyz[0], xyz[1], xyz[2]};
+    cloud->points[cloud->point_count++] = (Vector){xyz[0], xyz[1], xyz[2]};
     line += size + (line[size] == '\n');
   }
-  if (line != (const char*)file.data + file.size || !cloud->distinct) fail(BAD_INPUT, "%s: no points", path);
+  if (line != (const char*)file.data + file.size || !cloud->point_count) fail(BAD_INPUT, "%s: no points", path);
   return cloud;
 }
 
@@ -94,9 +95,8 @@ static Shape shape_of(Entry* entry, const char* more, const char* scene, Files* 
   if (shape.kind == KINDS) fail(BAD_INPUT, "%s: a shape that is not read: %.60s", where, kind);
   require_known(entry, joined(own[shape.kind], "shape xyz rpy xyzw cell clearance ", more), where);
   if (shape.kind == MESH) {
-    shape.mesh = mesh_of(entry, scene, where, files);
     shape.convex = is_true(entry, "convex", where);
-    if (shape.convex) keep_distinct(shape.mesh);
+    shape.mesh = mesh_of(entry, scene, where, shape.convex, files);
   } else if (shape.kind == CLOUD) {
     shape.mesh = cloud_of(entry, scene, where, files);
     shape.size[0] = 0.01;

@@ -21,16 +21,14 @@ static int meets(Vector a, Vector b, Vector c, Vector way) {
   return dot(normal, a) * dot(normal, way) > 0 ? CROSSES : PASSES;
 }
 
-/* Tell whether a point is inside of the closed piece of a mesh that begins with the triangle `piece`. */
-bool is_inside(Vector point, const Solid* solid, size_t piece) {
-  const Mesh* mesh = solid->shape->mesh;
+bool is_inside(Vector point, const Solid* solid, const Piece* piece) {
+  const size_t* members = solid->shape->mesh->members + piece->begin;
   for (size_t i = 0; i < sizeof WAYS / sizeof *WAYS; ++i) {
-    Vector way = scaled(1 / length(WAYS[i]), WAYS[i]);
+    Vector way = scaled(1 / length(WAYS[i]), WAYS[i]), c[3];
     bool odd = false, clear = true;
-    for (size_t k = piece; k < mesh->triangles && clear; ++k) {
-      if (mesh->piece[k] != piece) continue;
-      const Vector* c = solid->all + 3 * k;
-      int how = meets(difference(c[0], point), difference(c[1], point), difference(c[2], point), way);
+    for (size_t k = 0; k < piece->count && clear; ++k) {
+      for (size_t n = 0; n < 3; ++n) c[n] = difference(corner_at(solid, members[k], n), point);
+      int how = meets(c[0], c[1], c[2], way);
       clear = how != UNCLEAR;
       odd ^= how == CROSSES;
     }
@@ -39,20 +37,70 @@ bool is_inside(Vector point, const Solid* solid, size_t piece) {
   fail(REFUSED, "no ray shows whether a body is inside of another one");
 }
 
-bool is_surface(const Solid* solid) { return solid->shape->kind == MESH && !solid->shape->convex; }
-
-typedef struct {
-  Vector low, high;
-} Range;
-
-static void widen(Range* range, Vector a) {
-  range->low = (Vector){fmin(range->low.x, a.x), fmin(range->low.y, a.y), fmin(range->low.z, a.z)};
-  range->high = (Vector){fmax(range->high.x, a.x), fmax(range->high.y, a.y), fmax(range->high.z, a.z)};
-}
-
 static bool holds(const Range* range, Vector a) {
   return range->low.x <= a.x && a.x <= range->high.x && range->low.y <= a.y && a.y <= range->high.y &&
          range->low.z <= a.z && a.z <= range->high.z;
+}
+
+/* Where each piece of a node begins, or each element that is no triangle, as the frame of another one sees it. */
+static Vector* beginnings(const Node* inner, const Pose* from, const Pose* to, size_t* count) {
+  Vector* points = take(inner->count, sizeof *points);
+  *count = 0;
+  for (size_t i = 0; i < inner->solid_count; ++i) {
+    const Solid* solid = inner->solids[i];
+    const Mesh* mesh = solid->shape->mesh;
+    bool surface = is_surface(solid);
+    for (size_t k = 0; k < (surface ? mesh->piece_count : solid->elements); ++k) {
+      size_t element = surface ? mesh->members[mesh->pieces[k].begin] : k;
+      points[(*count)++] = turned_in(to, difference(placed(from, corner_at(solid, element, 0)), to->at));
+    }
+  }
+  return points;
+}
+
+/* Find the ranges of the pieces of a mesh. */
+static void find_ranges(Solid* solid) {
+  const Mesh* mesh = solid->shape->mesh;
+  if (solid->ranges) return;
+  solid->ranges = take(mesh->piece_count, sizeof *solid->ranges);
+  solid->met = take(mesh->piece_count, sizeof *solid->met);
+  for (size_t i = 0; i < mesh->piece_count; ++i) {
+    const size_t* members = mesh->members + mesh->pieces[i].begin;
+    solid->ranges[i].low = solid->ranges[i].high = corner_at(solid, members[0], 0);
+    for (size_t k = 0; k < 3 * mesh->pieces[i].count; ++k) {
+      widen(solid->ranges + i, corner_at(solid, members[k / 3], k % 3));
+    }
+  }
+}
+
+/* Refuse points inside of closed pieces of a solid; count the open ones around whose inside nothing is claimed. */
+static size_t require_outside_of(Solid* outer, const Vector* points, size_t count) {
+  const Mesh* mesh = outer->shape->mesh;
+  size_t opened = 0;
+  find_ranges(outer);
+  for (size_t i = 0; i < mesh->piece_count; ++i) {
+    const Piece* piece = mesh->pieces + i;
+    for (size_t k = 0; k < count && !outer->met[i]; ++k) {
+      if (!holds(outer->ranges + i, points[k])) continue;
+      if (!piece->closed) opened += outer->met[i] = true;
+      if (piece->closed && is_inside(points[k], outer, piece)) fail(REFUSED, "a body is inside of another one");
+    }
+  }
+  return opened;
+}
+
+/* Tell whether the box of a node meets that of another one, along the axes of the other's frame. */
+static bool boxes_meet(Node* inner, const Pose* from, Node* outer, const Pose* to) {
+  const Vector axes[3] = {to->x, to->y, to->z}, own[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int i = 0; i < 3; ++i) {
+    Vector ways[2] = {turned_in(from, axes[i]), turned_in(from, scaled(-1, axes[i]))};
+    Vector backs[2] = {scaled(-1, own[i]), own[i]};
+    double far[2], back[2], apart = dot(axes[i], difference(from->at, to->at));
+    find_supports(inner, ways, true, far);
+    find_supports(outer, backs, true, back);
+    if (far[0] + apart + back[0] < 0 || far[1] - apart + back[1] < 0) return false;
+  }
+  return true;
 }
 
 static void find_all_pieces(const Node* node) {
@@ -61,68 +109,26 @@ static void find_all_pieces(const Node* node) {
   }
 }
 
-/* Where each piece of `inner` begins, as the frame of another node sees it. */
-static Vector* beginnings(const Node* inner, const Pose* from, const Pose* to, size_t* count) {
-  Vector* points = take(inner->count + 1, sizeof *points);
-  *count = 0;
-  for (size_t i = 0; i < inner->solid_count; ++i) {
-    const Solid* solid = inner->solids[i];
-    for (size_t k = 0; k < solid->elements; ++k) {
-      if (is_surface(solid) && solid->shape->mesh->piece[k] != k) continue;
-      Vector point = placed(from, solid->all[k * solid->corners]);
-      points[(*count)++] = turned_in(to, difference(point, to->at));
-    }
+static bool has_surface(const Node* node) {
+  for (size_t i = 0; i < node->solid_count; ++i) {
+    if (is_surface(node->solids[i])) return true;
   }
-  return points;
-}
-
-/* Refuse points inside of closed pieces of a solid; count the open ones around whose inside nothing is claimed. */
-static size_t require_outside_of(Solid* outer, const Vector* points, size_t count) {
-  const Mesh* mesh = outer->shape->mesh;
-  size_t opened = 0;
-  Range* ranges = take(mesh->triangles, sizeof *ranges);
-  if (!outer->met) outer->met = take(mesh->triangles, sizeof *outer->met);
-  for (size_t i = 0; i < 3 * mesh->triangles; ++i) {
-    size_t piece = mesh->piece[i / 3];
-    if (piece == NONE) continue;
-    if (i == 3 * piece) ranges[piece] = (Range){outer->all[i], outer->all[i]};
-    widen(ranges + piece, outer->all[i]);
-  }
-  for (size_t piece = 0; piece < mesh->triangles; ++piece) {
-    if (mesh->piece[piece] != piece || outer->met[piece]) continue;
-    for (size_t i = 0; i < count; ++i) {
-      if (!holds(ranges + piece, points[i])) continue;
-      if (mesh->closed[piece] && is_inside(points[i], outer, piece)) fail(REFUSED, "a body is inside of another one");
-      if (!mesh->closed[piece] && !outer->met[piece]) opened += outer->met[piece] = true;
-    }
-  }
-  return opened;
-}
-
-/* Tell whether the box of a node meets that of another one, along the axes of the other's frame. */
-static bool boxes_meet(const Node* inner, const Pose* from, const Node* outer, const Pose* to) {
-  const Vector axes[3] = {to->x, to->y, to->z}, own[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (int i = 0; i < 3; ++i) {
-    for (int sign = -1; sign <= 1; sign += 2) {
-      Vector way = scaled(sign, axes[i]), back = scaled(-sign, own[i]);
-      double far = support(inner, turned_in(from, way), true) + dot(way, difference(from->at, to->at));
-      if (far + support(outer, back, true) < 0) return false;
-    }
-  }
-  return true;
+  return false;
 }
 
 size_t require_outside(const Model* model) {
   Moved* moved = take(model->frame_count, sizeof *moved);
-  place_frames(model, 0, 0, 0, moved);
+  const Stretch start = {.number = 1};
+  moved[0].pose = identity();
+  for (size_t i = 1; i < model->frame_count; ++i) place_chain(model, i, &start, moved);
   size_t opened = 0;
   for (size_t i = 0; i < model->pair_count; ++i) {
     const Pair* pair = model->pairs + i;
-    const Node* nodes[2] = {pair->first, pair->second};
+    Node* nodes[2] = {pair->first, pair->second};
     for (int k = 0; k < 2 && !pair->apart; ++k) {
-      const Node *inner = nodes[k], *outer = nodes[1 - k];
+      Node *inner = nodes[k], *outer = nodes[1 - k];
       const Pose *from = &moved[inner->frame].pose, *to = &moved[outer->frame].pose;
-      if (!boxes_meet(inner, from, outer, to)) continue;
+      if (!has_surface(outer) || !boxes_meet(inner, from, outer, to)) continue;
       find_all_pieces(inner);
       find_all_pieces(outer);
       size_t count = 0;

@@ -4,10 +4,8 @@
 
 #include "model.h"
 
-bool is_surface(const Solid* solid); /* of triangles */
-
-/* Tell whether a point is inside of the closed piece of a mesh that begins with the triangle `piece`. */
-bool is_inside(Vector point, const Solid* solid, size_t piece);
+/* Tell whether a point is inside of a closed piece of a mesh. */
+bool is_inside(Vector point, const Solid* solid, const Piece* piece);
 
 /* Refuse if a piece of one body begins inside of a closed piece of another; the number of open pieces that were met. */
 size_t require_outside(const Model* model);

@@ -122,8 +122,8 @@ def surface(triangles: Floats, at: Pose, scale: Floats) -> Shape:
 
 
 def hull(shapes: list[Shape]) -> Shape:
-    """Return the hull of some shapes as one element."""
-    return _element(np.concatenate([each.points for each in shapes]))
+    """Return the hull of some shapes as one element, with each corner once."""
+    return _element(np.unique(np.concatenate([each.points for each in shapes]), axis=0))
 
 
 def balls(data: bytes, radius: float) -> Shape:

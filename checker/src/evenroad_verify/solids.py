@@ -93,7 +93,9 @@ def pieces_of(shape: Shape, known: dict[int, list[tuple[Floats, bool]]]) -> list
             edge, count = _edges(corner, len(label))
         open_ones = set(label[edge[count % 2 == 1] // len(label)].tolist())
         of = label[corner[:, 0]]
-        known[id(shape)] = [(shape.points[corner[of == each]], int(each) not in open_ones) for each in np.unique(of)]
+        order = np.argsort(of, kind="stable")
+        pieces = np.split(order, np.flatnonzero(np.diff(of[order])) + 1)
+        known[id(shape)] = [(shape.points[corner[some]], int(of[some[0]]) not in open_ones) for some in pieces]
     return known[id(shape)]
 
 
