@@ -1,15 +1,19 @@
-"""Which points plan best: success of candidates in two families of random worlds, world by world.
+"""Which points plan best: success of candidates in families of random worlds, world by world.
 
     python -m studies.benchmarks.points_apart --use tuning -d 3 --worlds 60 --csv OUT.csv
-    python -m studies.benchmarks.points_apart --fair --use reporting -d 3 --worlds 150
+    python -m studies.benchmarks.points_apart --family fair --use reporting -d 3 --worlds 150
+    python -m studies.benchmarks.points_apart --family arms --use reporting --only sobol uniform --beside sobol
 
-The family ``apart`` has start and goal at opposite faces: slots, forests, rooms with doors, caves, bars.  `--fair` is
-the periodic one: balls and boxes.  Roadmaps are ``k symmetrised``; start and goal are joined by the rule alone
-("rule"), and to the 100 nearest milestones as well, as a plan does ("plan").  All candidates see the same worlds.  A
-difference is from `--beside`, in points, paired by world, with its standard error.
+The family ``apart`` has start and goal at opposite faces: slots, forests, rooms with doors, caves, bars.  ``fair`` is
+the periodic one: balls and boxes.  ``anywhere`` has start and goal anywhere, among blocks that bound all axes and in
+corridors, and ``arms`` has three arms among boxes.
+
+Roadmaps are ``k symmetrised``; start and goal are joined by the rule alone ("rule"), and to the 100 nearest milestones
+as well, as a plan does ("plan").  All candidates see the same worlds.  A difference is from `--beside`, in points,
+paired by world, with its standard error.
 
 World after world takes the next of eight numbers of points, 0.88 to 1.12 times that of the family: which lattice is
-the best one depends on the number by chance.  ``even`` is what a planner takes, contracted for its k.
+the best one depends on the number by chance.
 """
 
 from __future__ import annotations
@@ -22,12 +26,11 @@ from studies.benchmarks.rows import parser_of, write_rows
 
 from evenroad._arrays import Bools
 from evenroad.errors import NotAvailable
-from evenroad.points.samplers.even import CONTRACTED_FROM, contraction
 from evenroad_studies.bench.task import Problem
 from evenroad_studies.candidates import CANDIDATES
 from evenroad_studies.connected import connected
-from evenroad_studies.problems import fair
-from evenroad_studies.problems.apart import COUNTS, SIZES, Kind, Use, make
+from evenroad_studies.problems import anywhere, apart, fair
+from evenroad_studies.problems.apart import Use
 
 KS = (4, 6, 10, 20)
 HOW = ("rule", "plan")
@@ -39,19 +42,31 @@ TIMES = (0.88, 0.92, 0.95, 0.98, 1.0, 1.03, 1.07, 1.12)
 Make = Callable[[int], Problem]
 
 
-def problems(use: Use, d: int, periodic: bool) -> Iterator[tuple[str, Make]]:
+FAMILIES = ("apart", "fair", "anywhere", "arms")
+ARM_JOINTS = sorted(d for _, d in anywhere.ARMS.values())
+
+
+def problems(use: Use, d: int, family: str) -> Iterator[tuple[str, Make]]:
     """Yield the kinds of worlds of a family, with what makes the problem of a number."""
-    if periodic:
+    if family == "fair":
         stream = fair.Stream.TUNING if use is Use.TUNING else fair.Stream.REPORTING
-        for family in (fair.Family.BALLS, fair.Family.BOXES):
-            size = fair.SIZES[family, d][1]
-            yield (
-                family.name.lower(),
-                lambda i, f=family, s=size: fair.make_instance(stream, f, d, 50, s, FIRST_FAIR + i),
-            )
+        for each in (fair.Family.BALLS, fair.Family.BOXES):
+            size = fair.SIZES[each, d][1]
+            yield each.name.lower(), lambda i, f=each, s=size: fair.make_instance(stream, f, d, 50, s, FIRST_FAIR + i)
+    elif family == "apart":
+        for kind in apart.Kind:
+            size = apart.SIZES[use, kind, d]
+            yield kind.name.lower(), lambda i, k=kind, s=size: apart.make(use, k, d, s, i)
     else:
-        for kind in Kind:
-            yield kind.name.lower(), lambda i, k=kind: make(use, k, d, SIZES[use, k, d], i)
+        for place in anywhere.Kind:
+            if (place in anywhere.ARMS) == (family == "arms") and (place, d) in anywhere.COUNTS:
+                size = anywhere.SIZES[use, place, d]
+                yield place.name.lower(), lambda i, k=place, s=size: anywhere.make(use, k, d, s, i)
+
+
+def number_of_points(family: str, d: int) -> int:
+    """Return the number of points of the worlds of a family's calibration."""
+    return apart.COUNTS[d] if family != "arms" else anywhere.ARM_POINTS
 
 
 def measured(make_problem: Make, names: list[str], counts: Sequence[int], d: int, worlds: range) -> Bools:
@@ -60,11 +75,7 @@ def measured(make_problem: Make, names: list[str], counts: Sequence[int], d: int
     for i, number in enumerate(worlds):
         problem, n = make_problem(number), counts[number % len(counts)]
         for j, name in enumerate(names):
-            points = CANDIDATES[name](n, d, number)
-            shares = [contraction(k) if name == "even" and d >= CONTRACTED_FROM else 1.0 for k in KS]
-            for share in set(shares):
-                here = [at for at, each in enumerate(shares) if each == share]
-                found[i, j][:, here] = connected(problem, 0.5 + share * (points - 0.5), [KS[at] for at in here])
+            found[i, j] = connected(problem, CANDIDATES[name](n, d, number), KS)
     return found
 
 
@@ -99,25 +110,27 @@ def rows_of(found: Bools, names: list[str], beside: str) -> Iterator[dict[str, s
 def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("--use", choices=[use.name.lower() for use in Use], default="tuning")
-    parser.add_argument("--fair", action="store_true", help="periodic worlds instead")
-    parser.add_argument("-d", type=int, nargs="*", default=list(COUNTS))
+    parser.add_argument("--family", choices=FAMILIES, default="apart")
+    parser.add_argument("-d", type=int, nargs="*", help="dimensions; default: all of the family")
     parser.add_argument("-n", type=int, help="points; default: eight numbers about those of the calibration")
     parser.add_argument("--worlds", type=int, default=60, help="of each kind")
     parser.add_argument("--first", type=int, default=0, help="number of the first world")
+    parser.add_argument("--kinds", nargs="*", help="of worlds; default: all of the family")
     parser.add_argument("--only", nargs="*", default=list(CANDIDATES))
     parser.add_argument("--beside", default="even")
     parser.add_argument("--csv", type=Path)
     options = parser.parse_args()
     use, rows = Use[options.use.upper()], []
     worlds = range(options.first, options.first + options.worlds)
-    for d in options.d:
-        counts = [options.n] if options.n else [round(share * COUNTS[d]) for share in TIMES]
-        n = COUNTS[d] if len(counts) > 1 else counts[0]
+    for d in options.d or (ARM_JOINTS if options.family == "arms" else apart.COUNTS):
+        n = options.n or number_of_points(options.family, d)
+        counts = [n] if options.n else [round(share * n) for share in TIMES]
         names = available(options.only, counts[0], d)
-        kinds = problems(use, d, options.fair)
-        found = {kind: measured(make_problem, names, counts, d, worlds) for kind, make_problem in kinds}
+        kinds = problems(use, d, options.family)
+        asked = [(kind, make) for kind, make in kinds if options.kinds is None or kind in options.kinds]
+        found = {kind: measured(make, names, counts, d, worlds) for kind, make in asked}
         found["all"] = np.concatenate(list(found.values()))
-        here = {"use": options.use, "family": "fair" if options.fair else "apart", "d": str(d)}
+        here = {"use": options.use, "family": options.family, "d": str(d)}
         here["n"] = " ".join(map(str, counts))
         for kind, each in found.items():
             rows += [here | {"kind": kind} | row for row in rows_of(each, names, options.beside)]

@@ -4,7 +4,8 @@
 same with the cells' far samples weighted, so that the largest hole shrinks (Lloyd for the 8th moment instead of the
 second).  ``farthest``: greedy farthest points of a random pool, on the torus.  ``poisson``: what is left of five times
 as many random points when the most crowded go one by one, on the torus (Yuksel 2015).  ``projected``: a trained set of
-ten dimensions on its best axes.  ``ordered``: the first points of a trained set of 1024 in greedy order.
+ten dimensions on its best axes.  ``rank one``: a rank-1 lattice with good projections, its axes in random order, which
+with A_d* was `even` from four dimensions on.  ``ordered``: the first points of a trained set of 1024 in greedy order.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from evenroad._arrays import Floats, Ints
 from evenroad.points import draw, greedy_order, project
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry, randomise
+from evenroad.points.samplers.korobov import shifted_lattice
+from evenroad.points.samplers.rank_one import rank_one_vector
 
 POOL = 8
 """Sets of a slow candidate; from world to world their axes are mirrored and in another order."""
@@ -122,6 +125,13 @@ def ordered(n: int, d: int, seed: int) -> Floats:
     return greedy_order(draw("hickernell", 1024, d, rng=seed)).points[:n].copy()
 
 
+def rank_one(n: int, d: int, world: int) -> Floats:
+    """Return a rank-1 lattice with good projections, shifted, its axes in random order, (n, d)."""
+    random = np.random.default_rng([world, n, d])
+    vector = random.permutation(np.array(rank_one_vector(n, d)))
+    return shifted_lattice(n, vector.tolist(), random.random(d))
+
+
 _SLOW: Mapping[str, Draw] = {
     "centroidal": partial(voronoi, 2.0),
     "holes": partial(voronoi, 8.0),
@@ -133,12 +143,13 @@ _SLOW: Mapping[str, Draw] = {
 }
 CANDIDATES: dict[str, Draw] = {
     **{name: partial(_drawn, name) for name in ("even", "korobov", "sobol", "halton", "growing", "uniform")},
+    "rank one": rank_one,
     **{name: partial(_from_bank, name) for name in ("hickernell", "mpmc")},
     **{name: partial(_pooled, make) for name, make in _SLOW.items()},
 }
 """Name -> how the set of a world is drawn."""
 CANDIDATES |= {
     f"{name} {share:g}": partial(inset, share, CANDIDATES[name])
-    for name in ("korobov", "lattice", "sobol", "hickernell")
-    for share in (0.95, 0.9, 0.85)
+    for name in ("korobov", "lattice", "sobol", "hickernell", "rank one")
+    for share in (0.97, 0.95, 0.94, 0.9, 0.85)
 }

@@ -20,8 +20,9 @@ def lattice_points(a, n, d):
 
 
 def slow_generator(n, d):
-    """Return the smallest a whose energy is the least of all, up to rounding."""
-    allowed = [a for a in range(1, n) if gcd(a, n) == 1]
+    """Return the smallest a whose energy is the least of all with no two axes on one line, up to rounding."""
+    every = [a for a in range(1, n) if gcd(a, n) == 1]
+    allowed = [a for a in every if len({min(a**k % n, -(a**k) % n) for k in range(d)}) == d] or every
     energies = [riesz_rooted(lattice_points(a, n, d)) ** (2 * d) for a in allowed]
     return next(a for a, energy in zip(allowed, energies, strict=True) if energy <= min(energies) * (1 + 1e-9))
 

@@ -119,7 +119,8 @@ def korobov_generator(n: int, d: int) -> int:
     """Return the multiplier a whose Korobov lattice of n points has the smallest periodic Riesz energy, s = 2d.
 
     a, n - a and the inverse of a modulo n give the same lattice up to a reflection or the order of the axes.  One
-    of the four is tried, and the smallest is returned.  While n^2 d <= 10^8, all multipliers without a common
+    of the four is tried, and the smallest is returned.  Lattices with two equal or opposite axes count only if there is
+    no other: n may have too few multipliers.  While n^2 d <= 10^8, all multipliers without a common
     divisor with n are tried, so a is the best one.  Above that a fixed choice of them is tried, spread over
     1 .. n/2, as many as :data:`WORK` allows.  Raises InvalidValue unless n is 1 .. 2**26 and d >= 1.
     """
@@ -138,7 +139,11 @@ def _candidates(n: int, d: int) -> Ints:
     """Return the multipliers to try, each the smallest of the four that give its lattice."""
     tried = islice(multipliers(n), max(FEWEST_TRIED, WORK // (n // 2 * d)))
     pairs = ((a, pow(a, -1, n)) for a in tried)
-    return np.array(sorted({min(a, n - a, b, n - b) for a, b in pairs}), dtype=np.int64)
+    every = np.array(sorted({min(a, n - a, b, n - b) for a, b in pairs}), dtype=np.int64)
+    # A power of 1 or -1 repeats an axis, up to its direction: all points of that plane then lie on one line.
+    later = powers(every, n, d)[:, 1:]
+    apart = ~((later == 1) | (later == n - 1)).any(axis=1)
+    return every[apart] if apart.any() else every
 
 
 def powers(multipliers: Ints, n: int, d: int) -> Floats:

@@ -12,9 +12,10 @@ from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES, Symmetry
+from evenroad.points.sobol import scrambled_sobol, table_of_scipy
 
-SOBOL_LENGTH = 2**30
-"""Number of distinct points of SciPy's Sobol engine at its default 30 bits."""
+SOBOL_LENGTH, SOBOL_DIMENSIONS = 2**30, 21201
+"""Number of distinct points of SciPy's Sobol engine at its default 30 bits, and of axes with direction numbers."""
 
 
 @dataclass(frozen=True)
@@ -126,13 +127,16 @@ class Sobol(_Sequence):
 
         Raises InvalidValue also if start + n exceeds 2**30, or d the 21201 dimensions of the direction numbers.
         """
-        from scipy.stats import qmc
-
         n, d = require_count("n", n), require_count("d", d)
         if self.start + n > SOBOL_LENGTH:
             raise InvalidValue(f"the Sobol sequence ends at index {SOBOL_LENGTH}, asked for {self.start + n}")
-        if d > qmc.Sobol.MAXDIM:
-            raise InvalidValue(f"d must be at most {qmc.Sobol.MAXDIM} for Sobol points, got {d}")
+        if d > SOBOL_DIMENSIONS:
+            raise InvalidValue(f"d must be at most {SOBOL_DIMENSIONS} for Sobol points, got {d}")
+        if self.scramble and not self.start and table_of_scipy().is_file():
+            # SciPy spawns a generator that it is given.
+            return self._set(scrambled_sobol(n, d, generator(rng).spawn(1)[0]), rng)
+        from scipy.stats import qmc
+
         engine = qmc.Sobol(d, scramble=self.scramble, rng=generator(rng))
         if self.start:
             engine.fast_forward(self.start)

@@ -37,7 +37,12 @@ class Boxes(CubeWorld):
         return int(self.low.shape[1])
 
     def _valid(self, q: Floats) -> Bools:
-        return self._motion_valid(q, q)
+        return and_in_blocks(are_in_cube(q), self._outside, self.low.size, q)
+
+    def _outside(self, q: Floats) -> Bools:
+        q = q[:, np.newaxis]
+        outside: Bools = np.all(np.any((q <= self.low) | (q >= self.high), axis=-1), axis=1)
+        return outside
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
         return and_in_blocks(are_in_cube(a) & are_in_cube(b), self._miss, self.low.size, *in_order(a, b))
