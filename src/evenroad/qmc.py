@@ -258,19 +258,23 @@ class Growing(SequenceEngine):
 
 
 class Even(FamilyEngine):
-    """Sets of the default sampler: lattices of any n and d."""
+    """Sets for roadmaps: lattices of any n and d, whose points are far apart.
+
+    For integrals and designs of experiments take :class:`Hickernell`, or SciPy's :class:`Sobol` beyond its bank.  There
+    the errors of `Even` are up to 20 times larger: ``studies/docs/other-uses.md`` has the ratios.
+    """
 
     family = "even"
 
 
 class Hickernell(FamilyEngine):
-    """Sets annealed for the Hickernell L2 discrepancy."""
+    """Sets annealed for the Hickernell L2 discrepancy: for integrals and designs of experiments."""
 
     family = "hickernell"
 
 
 class Korobov(FamilyEngine):
-    """Rank-1 lattices of smallest periodic Riesz energy, any n and d."""
+    """Rank-1 lattices of smallest periodic Riesz energy, any n and d; for roadmaps, as :class:`Even`."""
 
     family = "korobov"
 

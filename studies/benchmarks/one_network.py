@@ -9,8 +9,7 @@ the score that chose `even`: log(E) / (2 d) + 2 log(W), with E the periodic Ries
 discrepancy.  Training is by evolution strategies in d = 5, 6 and 8, n = 48 to 200; the table has n and d not seen.
 
 Success is that of roadmaps in the reported worlds ``apart``, linked as a plan links, mean over 6, 10 and 20 neighbours.
-No set is contracted, as a plan contracts `even`.  "network" is how much more its sets solve, in points, paired by
-world, with its standard error.
+"network" is how much more its sets solve, in points, paired by world, with its standard error.
 """
 
 from __future__ import annotations

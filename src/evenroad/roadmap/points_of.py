@@ -32,18 +32,15 @@ def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike 
     """Return n points of the space's cube: `even`, but other ones in SE(3).
 
     In SE(3) evenness gains nothing: points are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
-    points.  In a box of four or more dimensions they are contracted to the middle, most if the rule has few neighbours.
+    points.
     """
     # Imported late: most plans draw no points.
     from evenroad.points.samplers import make_sampler
-    from evenroad.points.samplers.even import CONTRACTED_FROM, Sliced, contracted, contraction
+    from evenroad.points.samplers.even import Sliced
 
     d = space.cube_dim
     k = None if rule is None else rule.reach(n, space).k
     parts = space.parts if isinstance(space, Product) else ()
     if [(type(part), part.dim) for part in parts] == [(BoxSpace, 3), (SO3, 4)]:
         return (Sliced() if k is not None and k <= SPARSE else make_sampler("sobol")).draw(n, d, rng=rng)
-    points = make_sampler("even").draw(n, d, rng=rng)
-    if k is None or d < CONTRACTED_FROM or not isinstance(space, BoxSpace):
-        return points
-    return contracted(points, contraction(k))
+    return make_sampler("even").draw(n, d, rng=rng)

@@ -1,6 +1,7 @@
 """Generating vectors of small energy and discrepancy, both measured on the points."""
 
 from itertools import combinations
+from math import gcd
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from evenroad.points.measures import MEASURES, riesz_rooted
 from evenroad.points.measures.rank_one import generating_vector, successive_minima
 from evenroad.points.samplers import rank_one
 from evenroad.points.samplers.korobov import korobov_generator
-from evenroad.points.samplers.rank_one import EVENNESS, rank_one_vector
+from evenroad.points.samplers.rank_one import evenness, has_distinct_axes, rank_one_vector
 from tests.refused import refused
 
 POOR_BY_ENERGY = ((512, 4), (128, 5), (512, 7), (240, 5), (120, 7))
@@ -25,7 +26,7 @@ def powers(n, d):
 
 def score(n, z):
     points = np.arange(n)[:, np.newaxis] * np.array(z) % n / n
-    return np.log(riesz_rooted(points)) + EVENNESS * np.log(MEASURES["wrap_around"].rooted(points))
+    return np.log(riesz_rooted(points)) + evenness(len(z)) * np.log(MEASURES["wrap_around"].rooted(points))
 
 
 def least_in_planes(n, z):
@@ -35,11 +36,16 @@ def least_in_planes(n, z):
 
 @settings(max_examples=30)
 @given(n=st.integers(4, 300), d=st.integers(3, 8))
-def test_no_powers_of_a_multiplier_score_less(n, d):
+def test_no_powers_of_a_multiplier_score_less_and_no_two_axes_are_on_one_line(n, d):
     z = rank_one_vector(n, d)
     assert z[0] == 1
     assert len(z) == d
-    assert score(n, z) <= score(n, powers(n, d)) + 1e-6
+    units = sum(gcd(i, n) == 1 for i in range(1, n)) // 2
+    assert has_distinct_axes(n, d) == (units >= d)
+    if units >= d:
+        assert len({min(each, n - each) for each in z}) == d
+        first = powers(n, d)
+        assert len({min(each, n - each) for each in first}) < d or score(n, z) <= score(n, first) + 1e-6
 
 
 @pytest.mark.parametrize(("n", "d"), POOR_BY_ENERGY)
@@ -97,5 +103,5 @@ def test_even_sets_have_that_vector_and_say_so(n, d):
 
 def test_lattices_of_many_dimensions_are_made_without_a_warning_of_numpys():
     # Warnings are errors here: of poor lattices the energy is beyond the largest number.
-    assert draw("even", 64, 100).shape == (64, 100)
-    refused(InvalidValue, "d must be at most 1024", draw, "even", 8, 1025)
+    assert draw("even", 211, 100).shape == (211, 100)
+    refused(InvalidValue, "d must be at most 1024", draw, "even", 2099, 1025)

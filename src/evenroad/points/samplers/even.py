@@ -1,4 +1,4 @@
-"""The default: A_d* in three and four dimensions, else rank-1 lattices with good projections."""
+"""The default: A_3* in space, else rank-1 lattices with good projections; and poses for sparse roadmaps."""
 
 from __future__ import annotations
 
@@ -16,61 +16,40 @@ from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.korobov import Korobov
 from evenroad.points.samplers.lattice import Lattice
 from evenroad.points.samplers.plain import Sobol
-from evenroad.points.samplers.rank_one import rank_one_vector
+from evenroad.points.samplers.rank_one import has_distinct_axes, rank_one_vector
 
-IN_ALL_DIRECTIONS, MOST = (3, 4), 2**20
-"""Dimensions in which `even` is A_d*, and its largest number of points: it needs several times their memory."""
-
-CONTRACTED_FROM = 4
-"""Dimension from which the points of a roadmap in a box are contracted to its middle."""
-
-CONTRACTION = 0.9
-"""Smallest factor of the contraction: that of a roadmap with at most six neighbours."""
+IN_ALL_DIRECTIONS, MOST = 3, 2**20
+"""Dimension in which `even` is A_d*, and its largest number of points: it needs several times their memory."""
 
 
 @dataclass(frozen=True)
 class Even(Korobov):
-    """Our default: the lattice A_d* in three and four dimensions, else a rank-1 lattice with good projections.
+    """Our default for roadmaps: the lattice A_3* in space, else a rank-1 lattice with good projections.
 
-    A point of A_d* has 2 (d + 1) nearest neighbours in all directions.  The four nearest of a rank-1 lattice lie in a
-    plane, and mostly the six nearest in space.  From five dimensions on A_d* loses more in the spread of projections
-    than it gains by its neighbours.  There each set has a random order of the axes, because axes may differ in weight,
-    as the joints of an arm do.  ``studies/docs/which-points.md`` has the evidence.
+    A point of A_3* has 8 nearest neighbours in all directions; the six nearest of a rank-1 lattice mostly lie in a
+    plane.  From four dimensions on A_d* loses more in the spread of projections than it gains by its neighbours.  There
+    each set has a random order of the axes, because axes may differ in weight, as the joints of an arm do.  If n has
+    too few multipliers for axes that differ, the set is Sobol's.  ``studies/docs/which-points.md`` has the evidence.
     """
 
     name = "even"
-    about = "our default: the lattice A_d* in d = 3 and 4, else a rank-1 lattice with good projections"
-    # A lattice is shifted as it is drawn; A_d* does not match across faces.
+    about = "our default for roadmaps: the lattice A_3* in d = 3, else a rank-1 lattice with good projections"
+    # A lattice is shifted as it is drawn; A_3* does not match across faces.
     symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
     turned_from = 3
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n points, shape (n, d); limits are those of :class:`Korobov`."""
         n, d = require_count("n", n), require_count("d", d)
-        if d in IN_ALL_DIRECTIONS and n <= MOST:
+        if d == IN_ALL_DIRECTIONS and n <= MOST:
             return Lattice().draw(n, d, rng=rng).with_origin(family=self.name)
+        if d > IN_ALL_DIRECTIONS and not has_distinct_axes(n, d):
+            return Sobol().draw(n, d, rng=rng).with_origin(family=self.name)
         return super().draw(n, d, rng=rng).with_origin(objective="")
 
     def _vector(self, n: int, d: int) -> tuple[Sequence[int], str]:
         vector = rank_one_vector(n, d)
         return vector, f"z={' '.join(map(str, vector))}"
-
-
-def contraction(k: int) -> float:
-    """Return the factor for a roadmap of k neighbours: 1 - 0.6 / k, and at least :data:`CONTRACTION`.
-
-    With few neighbours motions are long.  Shorter motions then gain more than the lost corners of the cube cost.
-    """
-    return max(CONTRACTION, 1.0 - 0.6 / k)
-
-
-def contracted(points: PointSet, share: float = CONTRACTION) -> PointSet:
-    """Return the points contracted to the middle of the cube by a factor, 0 < share <= 1.
-
-    Motions between them are shorter: ``studies/docs/which-points.md`` has the evidence.
-    """
-    method = f"{points.origin.method}, drawn in to {share:g}"
-    return PointSet(0.5 + share * (points.points - 0.5), points.origin).with_origin(method=method)
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,9 @@ from evenroad.points.samplers.korobov import (
     require_dimensions,
 )
 
-EVENNESS = 2.0
-"""Weight of the discrepancy beside the energy, both as logs: chosen in tuning worlds of ``points_apart``."""
+FEW, OF_FEW, OF_MANY = 5, 6.0, 2.0
+"""Dimension up to which axes are few, and the weight of the discrepancy beside the energy, both as logs, for few axes
+and for more: chosen in tuning worlds of ``points_apart``."""
 
 STARTS, SWEEPS = 3, 20
 """Number of descents, the first from the best powers, and the most sweeps over all axes in each."""
@@ -45,11 +46,16 @@ BLOCK = 2**14
 """Number of points of a lattice that are examined together."""
 
 
+def evenness(d: int) -> float:
+    """Return the weight of the discrepancy in d dimensions."""
+    return OF_FEW if d <= FEW else OF_MANY
+
+
 @lru_cache(maxsize=1024)
 def rank_one_vector(n: int, d: int) -> tuple[int, ...]:
     """Return the generating vector of small energy and discrepancy; in the plane that of :class:`Korobov`.
 
-    The score is log(E) / (2 d) + :data:`EVENNESS` log(W), with E the periodic Riesz energy, s = 2d.  W is the
+    The score is log(E) / (2 d) + w log(W), with E the periodic Riesz energy, s = 2d, and w :func:`evenness`.  W is the
     wrap-around L2 discrepancy, the root mean square of Hickernell's over all shifts.  Each axis in turn tries all
     numbers without common divisor with n, or as many as :data:`TRIED` allows.  Raises InvalidValue if n > 2**26 or
     d > 1024.
@@ -62,13 +68,30 @@ def rank_one_vector(n: int, d: int) -> tuple[int, ...]:
         return tuple(pow(multiplier, axis, n) for axis in range(d))
     count = max(FEWEST_POWERS, WORK // (n // 2 * d))
     candidates = powers(np.array(sorted(islice(multipliers(n), count)), dtype=np.int64), n, d).astype(np.int64)
+    apart = ~((candidates[:, 1:] == 1) | (candidates[:, 1:] == n - 1)).any(axis=1)
+    candidates = candidates[apart] if apart.any() else candidates
     scores = [_score(*_sums(each, n), n, d) for each in candidates]
     best = tuple(candidates[_first_least(np.array(scores))].tolist())
     return best if n > LARGEST else _descended(n, best)
 
 
+def has_distinct_axes(n: int, d: int) -> bool:
+    """Return whether n has d multipliers of which no two are equal or opposite: half of Euler's totient or more."""
+    totient, left, prime = n, n, 2
+    while prime * prime <= left:
+        if left % prime == 0:
+            totient -= totient // prime
+            while left % prime == 0:
+                left //= prime
+        prime += 1
+    return (totient - totient // left if left > 1 else totient) // 2 >= d
+
+
 def _descended(n: int, first: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the vector of least score over all descents, one of which begins at `first`."""
+    """Return the vector of least score over all descents, one of which begins at `first`.
+
+    An axis never takes the number of another one or its opposite: all points of that plane would lie on one line.
+    """
     d, random = len(first), np.random.default_rng([n, len(first)])
     most = max(FEWEST_TRIED, TRIED // (n * (d - 1)))
     units = np.array([i for i in range(1, n // 2 + 1) if gcd(i, n) == 1])
@@ -82,11 +105,16 @@ def _descended(n: int, first: tuple[int, ...]) -> tuple[int, ...]:
         for _ in range(SWEEPS):
             for axis in range(1, d):
                 look_at_clock()
-                squared, kernel = _terms(np.delete(z, axis), steps, n)
+                rest = np.delete(z, axis)
+                taken = np.minimum(rest, n - rest)
+                squared, kernel = _terms(rest, steps, n)
                 others = squared.sum(axis=0), kernel.prod(axis=0)
                 scores = _score(*_summed(others[0] + of_tried[0], others[1] * of_tried[1], steps, n, d), n, d)
-                own = _terms(z[[axis]], steps, n)
-                score = _score(*_summed(others[0] + own[0], others[1] * own[1], steps, n, d), n, d)[0]
+                scores[np.isin(tried, taken)] = np.inf
+                score = np.inf
+                if min(z[axis], n - z[axis]) not in taken:
+                    own = _terms(z[[axis]], steps, n)
+                    score = _score(*_summed(others[0] + own[0], others[1] * own[1], steps, n, d), n, d)[0]
                 if scores.min() < score - TIE:
                     z[axis], score = tried[_first_least(scores)], scores.min()
             if score > before - TIE:
@@ -133,5 +161,5 @@ def _sums(vector: Ints, n: int) -> tuple[Floats, Floats]:
 
 def _score(energy: Floats, kernel: Floats, n: int, d: int) -> Floats:
     uneven = (1.5**d + kernel) / n - (4.0 / 3.0) ** d
-    logs = np.log(np.maximum(energy, 1e-300)) / (2 * d) + 0.5 * EVENNESS * np.log(np.maximum(uneven, 1e-300))
+    logs = np.log(np.maximum(energy, 1e-300)) / (2 * d) + 0.5 * evenness(d) * np.log(np.maximum(uneven, 1e-300))
     return np.asarray(logs)

@@ -15,7 +15,7 @@ from evenroad._arrays import Floats
 from evenroad.points.pointset import PointSet
 from evenroad.world import World
 
-PROTOCOL = 9
+PROTOCOL = 10
 """Counted up when the same task would give another row: rows of another protocol are not taken for done."""
 
 
