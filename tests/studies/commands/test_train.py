@@ -33,6 +33,18 @@ def test_the_network_trains_from_the_command_line(run, tmp_path):
     assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.method.endswith("+annealed")
 
 
+def test_the_published_network_makes_a_batch_and_the_same_line_reads_it(run, tmp_path):
+    line = ("train", "-n", 12, "-d", 2, "--method", "printed", "--batch", 3, "--steps", 4, "-o", "sets")
+    code, out, _ = run(*line)
+    assert code == 0
+    assert "3 sets" in out
+    assert load_points(tmp_path / "sets" / "set-0002.npz").origin.method == "network as printed"
+    assert run(*line)[1] == out
+    assert run(*line[:-3], 5, *line[-2:])[0] == 2
+    assert run(*line, "--sets", 4)[0] == 2
+    assert run("train", "-n", 12, "-d", 2, "--batch", 3, "-o", "other")[0] == 2
+
+
 def test_the_network_is_judged_by_the_exact_star_discrepancy_on_request(run, tmp_path):
     line = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--objective", "star", "--judge", "star")
     code, out, _ = run(*line, "--sets", 1, "--steps", 50, "--jobs", 1, "-o", "sets")

@@ -5,16 +5,13 @@ import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.measures import MEASURES
-from evenroad_studies.network.config import NetworkConfig
-from evenroad_studies.network.layers import Graph
 from evenroad_studies.network.printed import Printed, neighbours_of, train_printed
-from evenroad_studies.network.train import Network
 from tests.refused import refused
 
 SMALL = {"n": 16, "d": 2, "sets": 3, "width": 16, "steps": 150}
 
 
-@pytest.mark.parametrize("options", [{}, {"radius": 0.35}, {"end": "sigmoid", "objective": "star"}])
+@pytest.mark.parametrize("options", [{}, {"radius": None}, {"end": "sigmoid", "objective": "star"}])
 def test_a_batch_gets_better_and_its_sets_come_best_first(options):
     sets, curve = train_printed(Printed(**SMALL | options), rng=3)
     again, _ = train_printed(Printed(**SMALL | options), rng=3)
@@ -25,22 +22,17 @@ def test_a_batch_gets_better_and_its_sets_come_best_first(options):
     assert (sets[0].origin.family, sets[0].origin.method) == ("mpmc", "network as printed")
 
 
-def test_a_radius_joins_all_points_within_it_and_nothing_else():
-    points = np.random.default_rng(1).random((30, 2))
-    graph = neighbours_of(points, Printed(30, 2, radius=0.2))
-    near = np.linalg.norm(points[:, None] - points, axis=2) <= 0.2
-    np.fill_diagonal(near, False)
-    for row, others in zip(graph, near, strict=True):
-        assert sorted(row[row >= 0]) == np.flatnonzero(others).tolist()
-
-
-def test_a_row_that_is_filled_up_sends_the_messages_of_its_beginning():
-    points, graph = np.random.default_rng(2).random((12, 3)), np.tile(np.arange(3), (12, 1))
-    filled = np.hstack([graph, np.full((12, 2), -1)])
-    first, second = (Network(NetworkConfig(12, 3), np.random.default_rng(0)) for _ in range(2))
-    np.testing.assert_allclose(first.moves(points, Graph.of(graph)), second.moves(points, Graph.of(filled)), rtol=1e-4)
-    slope = np.random.default_rng(4).random((12, 3))
-    np.testing.assert_allclose(first.slope_of(slope), second.slope_of(slope), rtol=1e-3, atol=1e-3)
+def test_a_radius_joins_the_first_32_points_within_it_and_each_with_itself():
+    points = np.random.default_rng(1).random((90, 2))
+    for radius in (0.2, 0.6):
+        graph = neighbours_of(points, Printed(90, 2, radius=radius))
+        near = np.linalg.norm(points[:, None] - points, axis=2) <= radius
+        np.fill_diagonal(near, False)
+        for own, (row, others) in enumerate(zip(graph, near, strict=True)):
+            assert row[row >= 0].tolist() == [own, *np.flatnonzero(others).tolist()[:31]]
+    nearest = neighbours_of(points, Printed(90, 2, radius=None, k=3))
+    gaps = np.linalg.norm(points[:, None] - points, axis=2)
+    assert all(set(row) == set(np.argsort(gap)[:4]) for row, gap in zip(nearest, gaps, strict=True))
 
 
 def test_options_out_of_range_are_refused():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -18,10 +18,12 @@ from evenroad.points import PointSet, load_points, save_points
 from evenroad.points.anneal import SCHEDULE, Callback, require_points_for
 from evenroad.points.measures import star_discrepancy
 from evenroad_studies.training import anneal_many, order_many, train_many
+from evenroad_studies.training.folder import REQUEST_FILE, set_name
 from evenroad_studies.training.objective import parse_objective
 
 if TYPE_CHECKING:
     from evenroad_studies.network import NetworkConfig
+    from evenroad_studies.network.printed import Printed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,14 +37,17 @@ class Train:
     """How many points a set has."""
     d: Annotated[int, "-d"]
     """How many coordinates a point has."""
-    method: Literal["anneal", "mpmc", "order"] | None = None
-    """anneal: noisy Adam on the coordinates. mpmc: the message-passing network. order: d = 2, --objective star alone,
+    method: Literal["anneal", "mpmc", "printed", "order"] | None = None
+    """anneal: noisy Adam on the coordinates. mpmc: the message-passing network, which moves good points. printed: the
+    published network, which makes a batch of sets of random points. order: d = 2, --objective star alone,
     and this the exact star discrepancy: orders of the points are tried, each with its best places.  Default: order for
     --objective star in d = 2, else anneal."""
     objective: str = "hickernell"
     """What is made small: a sum of measures, energies or their logs, e.g. "hickernell+10*riesz"."""
     sets: int = 8
     """How many sets."""
+    batch: int | None = None
+    """printed: number of sets that the network makes together (default: 8), in place of --sets."""
     steps: int = 5000
     """Steps of the optimiser."""
     refine: int = 0
@@ -70,8 +75,13 @@ class Train:
                 check()
                 report(step, steps, best)
 
-            make = {"anneal": self._anneal, "mpmc": self._network, "order": self._order}[self._chosen]
-            sets = make(callback)
+            make = {
+                "anneal": self._anneal,
+                "mpmc": self._network,
+                "printed": self._printed,
+                "order": self._order,
+            }
+            sets = make[self._chosen](callback)
         objective = parse_objective(self.objective)
         name, value = str(objective), objective.value
         if self._chosen == "order" or self.judge == "star":
@@ -99,6 +109,10 @@ class Train:
         for name, given in of_network.items():
             if given and self._chosen != "mpmc":
                 raise InvalidValue(f"--{name} does not go with the method {self._chosen!r}")
+        if self.batch is not None and self._chosen != "printed":
+            raise InvalidValue(f"--batch does not go with the method {self._chosen!r}")
+        if self._chosen == "printed" and self.sets != 8:
+            raise InvalidValue("--sets does not go with the method 'printed': --batch is the number of sets")
         if self._chosen == "order" and not self._of_stars:
             raise InvalidValue(
                 f"the method 'order' makes sets in d = 2 for --objective star,"
@@ -108,6 +122,8 @@ class Train:
             require_count("jobs", self.jobs)
         if self._chosen == "mpmc":
             self._config()
+        if self._chosen == "printed":
+            self._printed_config()
 
     def _make_folder(self) -> None:
         if self.out.exists() and not self.out.is_dir():
@@ -140,6 +156,28 @@ class Train:
             return sets
         claim_folder(self.out, {"steps": self.refine, "schedule": SCHEDULE}, "refined.json")
         return tuple(self._refined(i, points, callback) for i, points in enumerate(sets))
+
+    def _printed_config(self) -> Printed:
+        from evenroad_studies.network.printed import Printed
+
+        batch = 8 if self.batch is None else require_count("batch", self.batch)
+        return Printed(self.n, self.d, batch, self.objective, steps=self.steps)
+
+    def _printed(self, callback: Callback) -> tuple[PointSet, ...]:
+        """Train the network and save its sets, or read them if they are all there."""
+        from evenroad_studies.network.printed import train_printed
+
+        config = self._printed_config()
+        claim_folder(self.out, {"method": "printed", **asdict(config), "seed": self.seed}, REQUEST_FILE)
+        paths = [self.out / set_name(i) for i in range(config.sets)]
+        try:
+            return tuple(map(load_points, paths))
+        except BrokenFile:
+            pass  # missing or damaged: made (again)
+        sets, _ = train_printed(config, rng=self.seed, seen=lambda step, loss, _: callback(step, config.steps, loss))
+        for path, points in zip(paths, sets, strict=True):
+            save_points(path, points)
+        return sets
 
     def _refined(self, i: int, points: PointSet, callback: Callback) -> PointSet:
         """Refine set i and save it at once, or read it where an earlier run did."""
