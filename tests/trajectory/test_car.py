@@ -10,6 +10,7 @@ from evenroad.errors import InvalidValue, NotAvailable, UnknownName
 from evenroad.trajectory import DriveLimits, car_trajectory
 from evenroad.trajectory.blends import clothoids_free, nearer
 from tests.driving.oracle import BOX, Oracle, driven
+from tests.driving.polygon_oracle import PolygonOracle
 
 EMPTY = np.zeros((60, 60), dtype=bool)
 
@@ -177,6 +178,17 @@ def test_clothoids_that_are_proved_free_touch_nothing_and_few_others_are_refused
         proved += free
     assert proved >= 3
     assert refused == 0
+
+
+def test_a_car_among_polygons_has_blends_that_touch_none():
+    yard = er.PolygonMap([[(4, 0), (6, 0), (5, 3.5)], [(7.5, 4), (9.5, 4), (9.5, 6)]], bounds=((0, 0), (12, 8)))
+    world = yard.world(footprint=BOX, turning_radius=0.8)
+    result = er.plan(world, (1, 2, 0), (10.5, 2, -1.57))
+    trajectory = result.trajectory(speed=1.0, acceleration=0.5, curvature_rate=2.0)
+    keeps(trajectory, DriveLimits(speed=1.0, acceleration=0.5, curvature_rate=2.0))
+    assert trajectory.blends >= 2
+    oracle = PolygonOracle(yard, world.footprint.parts)
+    assert min(oracle.gap(pose) for pose in trajectory.positions[::20]) >= -1e-9
 
 
 def test_the_shortest_curves_between_waypoints_are_driven_where_a_planner_gives_no_pieces():

@@ -101,3 +101,15 @@ def test_a_page_without_times_follows_the_curves_of_a_car(reach):
     states = np.array(_data(page_of(result))["states"])
     on_path = grid.frame.to_pixels(result.path[:, :2])
     assert max(np.linalg.norm(on_path - state[:2], axis=1).min() for state in states) < 1.0
+
+
+def test_a_page_of_a_car_among_polygons_has_their_borders():
+    hole = [(3.0, 1.0), (4.0, 1.0), (4.0, 2.0)]
+    yard = er.PolygonMap([[[(2.5, 0.5), (4.5, 0.5), (4.5, 3.0)], hole]], bounds=((0, 0), (8, 8)))
+    car = yard.world(footprint=[(-0.5, -0.3), (0.5, -0.3), (0.5, 0.3), (-0.5, 0.3)], turning_radius=0.5)
+    data = _data(page_of(er.plan(car, (1, 1, 0), (7, 1, 0))))
+    ((outer, inner),) = data["polygons"]
+    assert len(outer) == 3
+    corners = car.grid.frame.to_map(np.array(inner)).round(3).tolist()
+    assert sorted(corners) == sorted([list(each) for each in hole])
+    assert "picture" not in data

@@ -14,6 +14,7 @@ from evenroad._seal import has_digest
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import KEPT, made_of
 from evenroad.driving.car_world import CarWorld
+from evenroad.driving.polygon_map import load_any_map
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import plan_of
 from evenroad.loading.robot_file import RobotFile
@@ -129,11 +130,11 @@ def _world_on_map(query: dict[str, Json], file: Path) -> DiskWorld | CarWorld:
     fields = _MAP | (_CAR if "footprint" in query else _DISK)
     if not all(isinstance(query.get(name), kind) for name, kind in fields.items()):
         raise BrokenFile(f"{file} is a damaged plan: of its map, radius, footprint, clearance or unknown cells")
-    grid = load_map(query["map"], unknown_is_free=query["unknown_is_free"], rules=query.get("rules"))
+    reading = {"unknown_is_free": query["unknown_is_free"], "rules": query.get("rules")}
     if "footprint" not in query:
-        return grid.world(query["robot_radius"], clearance=query["clearance"])
+        return load_map(query["map"], **reading).world(query["robot_radius"], clearance=query["clearance"])
     same = {name: query[name] for name in ("footprint", "turning_radius", "holonomic", "clearance")}
-    return grid.world(**same, reverse=not query["forward_only"])
+    return load_any_map(query["map"], **reading).world(**same, reverse=not query["forward_only"])
 
 
 def changed_since(kept: object, world: World) -> tuple[str, ...] | None:

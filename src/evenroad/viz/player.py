@@ -198,14 +198,13 @@ def _body_data(part: Part, link: int, kind: str, name: str) -> Data:
 
 
 def _map_data(world: DiskWorld | CarWorld, states: Floats) -> Data:
-    frame, picture = world.grid.frame, BytesIO()
-    plot_map(world.grid).save(picture, format="png")
+    frame = world.grid.frame
     pixels = frame.to_pixels(states[:, :2])
     data: Data = {
         "kind": "map",
         "unit": "m" if frame.y_up else "px",
         "name": "a disk on its map" if isinstance(world, DiskWorld) else "a car on its map",
-        "picture": "data:image/png;base64," + base64.b64encode(picture.getvalue()).decode(),
+        **_obstacle_picture(world),
         "size": [frame.cols, frame.rows],
         "joints": [],
         "sets": [],
@@ -219,6 +218,17 @@ def _map_data(world: DiskWorld | CarWorld, states: Floats) -> Data:
     scale = np.array([1.0, -1.0 if frame.y_up else 1.0]) / frame.resolution
     outlines = [[rounded(corner, 4) for corner in outline * scale] for outline in world.footprint.outlines]
     return data | {"outlines": outlines, "states": [rounded(row, 4) for row in turned]}
+
+
+def _obstacle_picture(world: DiskWorld | CarWorld) -> Data:
+    """Return a picture of the cells, or the borders of polygons and of their holes, in cells."""
+    if isinstance(world, CarWorld) and world.polygons is not None:
+        to_pixels = world.grid.frame.to_pixels
+        borders = [[to_pixels(border).round(3).tolist() for border in each] for each in world.polygons.polygons]
+        return {"polygons": borders}
+    picture = BytesIO()
+    plot_map(world.grid).save(picture, format="png")
+    return {"picture": "data:image/png;base64," + base64.b64encode(picture.getvalue()).decode()}
 
 
 def columns_of(pose: Pose) -> list[float]:
