@@ -149,10 +149,13 @@ def test_what_completes_words_knows_every_verb_and_its_options(run, shell, dashe
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
 @pytest.mark.parametrize(("words", "wanted"), [
-    ("evenroad m", "measure"),
+    ("evenroad me", "measure"),
     ("evenroad plan --goal", "--goal --goal-pose --goal-velocity"),
     ("evenroad measure --j", "--json"),
-    ("evenroad plan off", ""),
+    ("evenroad plan off", "office.yaml"),
+    ("evenroad plan shelf.yaml --robot u", "ur5"),
+    ("evenroad plan a.png --sampler ev", "even"),
+    ("evenroad send off", ""),
 ])  # fmt: skip
 def test_bash_completes_words(run, words, wanted):
     script = run("--print-completion", "bash")[1]

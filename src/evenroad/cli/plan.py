@@ -47,7 +47,7 @@ class PlanOptions(SamplerOptions):
             *("start_velocity", "goal_velocity", "deviation", "step", "controller_joints"),
         ),
         **OF_ROBOTS,
-        "results": ("out", "no_picture", "csv", "certificate", "embed"),
+        "results": ("out", "no_picture", "json", "csv", "certificate", "embed"),
     }
     """Title of a group of the help -> its options."""
     planner: ClassVar[str]
@@ -81,6 +81,8 @@ class PlanOptions(SamplerOptions):
     Default: the name of WORLD in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
     """Draw no picture."""
+    json: bool = False
+    """Print the plan as JSON instead of a table."""
 
     def run(self) -> int:
         """Plan, write, report; return 0 when solved, else 1."""
@@ -97,7 +99,7 @@ class PlanDisk(PlanOptions, MapTimes):
     top-left corner, dark = obstacle; on a map of the MovingAI benchmarks (.map): the same, a letter a pixel; or on a
     ROS map_server file (.yaml): unit = metre, map frame, y up.
 
-    For an arm in a scene give --robot instead; its options: evenroad plan --robot --help; for a car --footprint.
+    For an arm in a scene give --robot instead; its options: evenroad plan --help robot; for a car --footprint.
 
     Example: evenroad plan office.yaml --start 1 2 --goal 8.5 3 --robot-radius 0.25
     """
@@ -256,7 +258,7 @@ class PlanArm(PlanOptions, RobotOptions):
     """Plan a short path for an arm in a scene, write a JSON result, the path as CSV and a picture.
 
     An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
-    For a disk on a map give --robot-radius instead; its options: evenroad plan --help
+    For a disk on a map: evenroad plan --help disk
 
     Example: evenroad plan box-reach.yaml --robot ur5 --start home --goal inside
     """
@@ -264,7 +266,7 @@ class PlanArm(PlanOptions, RobotOptions):
     planner = "evenroad.cli.plan_arm:plan_arm"
 
     world: Positional[Path]
-    """A scene (.yaml; shipped: shelf.yaml, box-reach.yaml, box-reach-narrow.yaml, empty.yaml)."""
+    """A scene (.yaml), or a name of `evenroad scenes`."""
     start: tuple[str, ...]
     """Where to start: one number per joint, separated by commas, name=value,..., or a named state."""
     robot: str

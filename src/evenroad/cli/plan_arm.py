@@ -95,7 +95,7 @@ def plan_arm(plan: PlanArm) -> int:
 
         save_arm_picture(file, result, world, problem.source)
 
-    code = finish(files, result, record, world.robot.group, draw, rows)
+    code = finish(files, result, record, world.robot.group, draw, rows, as_json=plan.json)
     return interrupted() if stopped else code
 
 

@@ -68,7 +68,7 @@ def plan_car(plan: PlanCar) -> int:
     if result.pieces is not None:
         more = [("drive", f"{len(result.pieces)} pieces, {result.cusps} changes between forwards and backwards")]
     rows, times = plan.with_times(result, {"plan": {"query": query, "made_of": made}})
-    code = finish(files, result, record | times, ("x", "y", "angle"), draw, [*more, *rows])
+    code = finish(files, result, record | times, ("x", "y", "angle"), draw, [*more, *rows], as_json=plan.json)
     return interrupted() if stopped else code
 
 

@@ -78,7 +78,7 @@ def plan_disk(plan: PlanDisk) -> int:
         record["certificate"] = guarantees(result.certificate)
         more = guarantee_rows(result.certificate)
     rows, times = plan.with_times(result, {"plan": {name: record[name] for name in ("query", "made_of")}})
-    code = finish(files, result, record | times, ("x", "y"), draw, [*more, *rows])
+    code = finish(files, result, record | times, ("x", "y"), draw, [*more, *rows], as_json=plan.json)
     return interrupted() if stopped else code
 
 

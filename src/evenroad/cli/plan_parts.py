@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -136,8 +137,10 @@ def finish(
     columns: Sequence[str],
     draw: Callable[[Path], None],
     more: Sequence[tuple[str, str]] = (),
+    *,
+    as_json: bool = False,
 ) -> int:
-    """Write record and path, print, draw the picture; return 0 when solved, else 1."""
+    """Write record and path, print a table or the record, draw the picture; return 0 when solved, else 1."""
     before = {path for path in files.values() if path.exists()}
     save_json(files["json"], with_digest(record))
     if "csv" in files:
@@ -147,7 +150,10 @@ def finish(
             del files["csv"]
         else:
             save_path_csv(files["csv"], result.path, columns)
-    print_plan(result, [f"{path} (replaced)" if path in before else str(path) for path in files.values()], more)
+    if as_json:
+        print(json.dumps(record, indent=2, allow_nan=False))
+    else:
+        print_plan(result, [f"{path} (replaced)" if path in before else str(path) for path in files.values()], more)
     if "png" in files:
         # Last, since it loads and takes longest.
         draw(files["png"])

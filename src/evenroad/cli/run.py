@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -58,6 +59,8 @@ class RunTask(RobotOptions):
     """Time limit of the whole task in seconds, > 0 (default 5)."""
     seed: int = 0
     """Seed of everything random; the same command gives the same motions."""
+    json: bool = False
+    """Print JSON instead of a table."""
 
     def run(self) -> int:
         """Plan, write, report; return 0 if all steps can be done, else 1."""
@@ -82,7 +85,10 @@ class RunTask(RobotOptions):
             )
             rows += [("files", ", ".join(map(str, self.out)))] if self.out else []
             rows += self._certified(world, done)
-        print_table(rows)
+        if self.json:
+            print(json.dumps({"step": done.step, "cost": done.cost, **dict(rows)}, indent=2))
+        else:
+            print_table(rows)
         return 0 if done.solved else 1
 
     def _certified(self, world: ArmWorld, done: TaskResult) -> list[tuple[str, str]]:

@@ -37,6 +37,10 @@ VERBS = {
     ),
     "pairs": ("evenroad.cli.pairs:Pairs", "show whether links that are not tested ever touch, with proofs"),
     "robot": ("evenroad.cli.robot:Robot", "show an arm's joints, limits and shapes, and how fast it is checked"),
+    "robots": ("evenroad.cli.lists:Robots", "list the robots that have names"),
+    "scenes": ("evenroad.cli.lists:Scenes", "list the scenes that ship"),
+    "maps": ("evenroad.cli.lists:Maps", "list the maps that ship"),
+    "samplers": ("evenroad.cli.lists:Samplers", "list the samplers of points"),
     "generate": (
         "evenroad.cli.generate:Generate",
         "make a data set of problems with timed paths, for learning",
@@ -63,6 +67,7 @@ GROUPS = {
             "evenroad view box-reach.json --html reach.html",
         ),
     ),
+    "names": (("robots", "scenes", "maps", "samplers"), ("evenroad robots",)),
     "points": (
         ("points", "measure", "certify"),
         ("evenroad points -n 512 -d 6 -o set.npy", "evenroad measure set.npy"),
@@ -126,6 +131,14 @@ def _run(arguments: list[str]) -> int:
         return DONE
     if verb not in ABOUT:
         raise UnknownName.among("verb", verb, ABOUT)
+    if verb == "plan":
+        from evenroad.cli.plan_help import OVERVIEW, help_kind
+
+        chosen = help_kind(words)
+        if chosen == "":
+            print(OVERVIEW, end="")
+            return DONE
+        words = words if chosen is None else [chosen, "--help"]
     # Imported late: version and help do without.
     from evenroad.cli.read_options import read_options
 
@@ -164,7 +177,18 @@ def _print_completion(words: Sequence[str]) -> None:
     # A plan has other options for an arm than for a disk.
     kinds = {verb: (_kind(verb, ["--help"]), _kind(verb, ["--robot", "--help"])) for verb in there}
     names = {verb: set.union(*map(option_names, each)) for verb, each in kinds.items()}
-    print(completion(shell, {verb: ABOUT[verb] for verb in there}, names), end="")
+    print(completion(shell, {verb: ABOUT[verb] for verb in there}, names, _named_values()), end="")
+
+
+def _named_values() -> dict[str, list[str]]:
+    """Return word -> the names that may follow it, in the list of words that a shell completes."""
+    from evenroad.loading.find import list_robots
+    from evenroad.points.samplers import SAMPLERS
+    from evenroad.scenes.scene_file import SCENES
+    from evenroad.world.gridmap.load import SHIPPED
+
+    robots, worlds = list(list_robots()), [*(f"{name}.yaml" for name in SCENES), *SHIPPED]
+    return {"--robot": robots, "robot": robots, "roadmap": robots, "plan": worlds, "--sampler": sorted(SAMPLERS)}
 
 
 def _installed() -> list[str]:

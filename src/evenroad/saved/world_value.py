@@ -11,17 +11,13 @@ import zlib
 from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from evenroad._arrays import Bools
 from evenroad._files import Json
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.constraints.constrained_world import KeptWorld
-from evenroad.driving.car_world import CarWorld
-from evenroad.driving.footprint import Footprint
 from evenroad.errors import BrokenFile, EvenroadError, NotAvailable
 from evenroad.geometry.shapes import Mesh
 from evenroad.loading.cache import file_of, robot_as_text, robot_of_text
@@ -30,7 +26,9 @@ from evenroad.scenes.obstacles import Obstacles
 from evenroad.scenes.scene import Obstacle, Scene
 from evenroad.scenes.written import read_scene, scene_files
 from evenroad.world import World
-from evenroad.world.gridmap import DiskWorld, GridMap, MapFrame
+
+if TYPE_CHECKING:
+    from evenroad.world.gridmap import GridMap, MapFrame
 
 MOST_CELLS = 400_000_000
 """Largest number of cells of a map that is read."""
@@ -39,22 +37,18 @@ _OF_CAR = ("turning_radius", "reverse", "holonomic", "clearance")
 
 def value_of(world: World | None) -> dict[str, Json] | None:
     """Return a world as plain JSON values; None of a world that has none, as one of a user's function."""
+    if isinstance(world, ArmWorld):
+        return _arm_value(world)
+    if world is None:
+        return None
+    # Imported late: a plan of an arm has neither constraints nor a map.
+    from evenroad.constraints.constrained_world import KeptWorld
+    from evenroad.driving.car_world import CarWorld
+    from evenroad.world.gridmap import DiskWorld
+
     if isinstance(world, KeptWorld):
         inner = value_of(world.world)
         return None if inner is None else {**inner, "keeps": True}
-    if isinstance(world, ArmWorld):
-        try:
-            scene = scene_files(world.scene, "scene")
-        except NotAvailable:
-            return None
-        file = file_of(world.robot)
-        return {
-            "robot": robot_as_text(world.robot),
-            "file": None if file is None else {**asdict(file), "path": str(file.path.absolute())},
-            "scene": {"text": scene.text, "files": scene.files, "meshes": _names_of_meshes(world.scene)},
-            "resolution": world.resolution,
-            "clearance": world.clearance,
-        }
     if isinstance(world, DiskWorld):
         return {**_map_value(world.grid), "radius": world.radius, "clearance": world.margin}
     if isinstance(world, CarWorld):
@@ -63,17 +57,39 @@ def value_of(world: World | None) -> dict[str, Json] | None:
     return None
 
 
+def _arm_value(world: ArmWorld) -> dict[str, Json] | None:
+    try:
+        scene = scene_files(world.scene, "scene")
+    except NotAvailable:
+        return None
+    file = file_of(world.robot)
+    return {
+        "robot": robot_as_text(world.robot),
+        "file": None if file is None else {**asdict(file), "path": str(file.path.absolute())},
+        "scene": {"text": scene.text, "files": scene.files, "meshes": _names_of_meshes(world.scene)},
+        "resolution": world.resolution,
+        "clearance": world.clearance,
+    }
+
+
 def world_of(value: object, where: object) -> World:
     """Return the world of plain JSON values; BrokenFile, which names the file `where`, if they are not such."""
     try:
         if not isinstance(value, dict):
             raise TypeError("it must be a mapping")
         if "robot" in value:
+            # Imported late: most plans are not read.
+            from tempfile import TemporaryDirectory
+
             scene = value["scene"]
             with TemporaryDirectory() as folder:
                 read = read_scene(scene["text"], scene["files"], Path(folder))
             named = _with_names(read, scene["meshes"])
             return ArmWorld(robot_of_text(value["robot"]), named, value["resolution"], value["clearance"])
+        from evenroad.driving.car_world import CarWorld
+        from evenroad.driving.footprint import Footprint
+        from evenroad.world.gridmap import DiskWorld
+
         grid = _map_of(value["map"])
         if "radius" in value:
             return DiskWorld(grid, value["radius"], value["clearance"])
@@ -124,6 +140,8 @@ def _map_value(grid: GridMap) -> dict[str, Json]:
 
 
 def _map_of(value: Any) -> GridMap:
+    from evenroad.world.gridmap import GridMap, MapFrame
+
     said = {name: value[name] for name in MapFrame.__dataclass_fields__}
     frame = MapFrame(**{**said, "origin": tuple(said["origin"])})
     if frame.rows * frame.cols > MOST_CELLS:
