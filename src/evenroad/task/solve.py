@@ -20,7 +20,6 @@ from evenroad.planning.problem import Problem
 from evenroad.planning.read_problem import problem_in
 from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult, Status
-from evenroad.poses.chain import default_tip
 from evenroad.poses.constraint import Constraint
 from evenroad.poses.posture_layers import follow
 from evenroad.roadmap.budget import Budget
@@ -28,7 +27,7 @@ from evenroad.robots.robot import ConfigurationLike
 from evenroad.task.curves import follower_of
 from evenroad.task.motion import Leg, Motion, PlanBetween, along, choices
 from evenroad.task.result import TaskResult
-from evenroad.task.stage import Contacts, Stage, touches
+from evenroad.task.stage import Contacts, Stage, carrier_of, touches
 from evenroad.task.steps import AlongCurve, Attach, Detach, Move, MoveTo, Step, Wait
 
 WIDTHS = 2, 8, 32
@@ -149,7 +148,7 @@ class _Search:
         depths: dict[str, float] = {}
         if isinstance(after, Attach):
             robot = stage.world.robot
-            links = (after.link or default_tip(robot), *touches(after, robot))
+            links = (carrier_of(after, robot), *touches(after, robot))
             contacts |= {(link, after.object) for link in links}
             depths = {after.object: after.depth}
         if isinstance(after, Detach):

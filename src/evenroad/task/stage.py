@@ -16,7 +16,7 @@ from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import WORLD
 from evenroad.poses.chain import default_tip
 from evenroad.robots.held import HeldObject
-from evenroad.robots.kinematics import link_poses
+from evenroad.robots.kinematics import link_poses, tip_links
 from evenroad.robots.robot import Robot
 from evenroad.scenes.obstacle import Obstacle
 from evenroad.scenes.scene import Scene
@@ -74,7 +74,7 @@ class Stage:
 
     def gripping(self, step: Attach) -> ArmWorld:
         """Return the world in which the gripper may touch the object that it takes, but not deeply."""
-        links = (step.link or default_tip(self.world.robot), *touches(step, self.world.robot))
+        links = (carrier_of(step, self.world.robot), *touches(step, self.world.robot))
         return self.with_contacts(frozenset((link, step.object) for link in links), {step.object: step.depth})
 
     def attach(self, step: Attach, where: str, *, first: bool = False) -> Stage:
@@ -88,7 +88,7 @@ class Stage:
         found = [each for each in scene.obstacles if each.name == step.object]
         if not found:
             raise UnknownName.among(f"obstacle of {where}", step.object, scene.names)
-        link = step.link or default_tip(robot)
+        link = carrier_of(step, robot, where)
         if first and not (taking := self.gripping(step)).valid(self.q):
             raise InvalidValue(f"{where} attaches {step.object!r} where {taking.explain(self.q)}")
         look_at_clock()
@@ -148,6 +148,25 @@ def _smaller(name: str, depth: float) -> str:
     return f"{name} less {1e3 * depth:g} mm"
 
 
+def carrier_of(step: Attach, robot: Robot, where: str = "the task") -> str:
+    """Return the link that carries an object: that of the step, the last one, or the hand from which fingers branch.
+
+    Raises InvalidValue, which names the step `where`, if there are several.
+    """
+    if step.link:
+        return step.link
+    try:
+        return default_tip(robot)
+    except InvalidValue:
+        hands = tip_links(robot)
+        if len(hands) != 1:
+            raise InvalidValue(
+                f"{where} must say which link of {robot.name!r} carries {step.object!r}: Attach({step.object!r},"
+                f" link={hands[0]!r}), or {', '.join(hands[1:8])}"
+            ) from None
+        return hands[0]
+
+
 def touches(step: Attach, robot: Robot) -> tuple[str, ...]:
     """Return the links that may touch an attached object; default: all that no planned joint moves against its link.
 
@@ -161,7 +180,7 @@ def touches(step: Attach, robot: Robot) -> tuple[str, ...]:
     for joint in robot.joints:
         leader = joint.name if joint.mimic is None else joint.mimic.joint
         first[joint.child] = joint.child if leader in robot.group else first[joint.parent]
-    link = step.link or default_tip(robot)
+    link = carrier_of(step, robot)
     return tuple(each for each in robot.links if first[each] == first[link] and each not in robot.holds)
 
 

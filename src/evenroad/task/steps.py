@@ -189,7 +189,7 @@ class Attach:
     object : str
         Name of the obstacle.
     link : str
-        The link that carries it; default: the last one.
+        The link that carries it; default: the last one, or where fingers branch from a hand, the hand.
     touches : sequence of str, optional
         Links that may touch it on the lines to it, and while it is held.  Default: all links that no planned joint
         moves relative to `link`, such as fingers.
