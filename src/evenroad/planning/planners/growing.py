@@ -96,7 +96,6 @@ class GrowingPRM:
         if sampler is None:
             from evenroad.points.samplers import make_sampler
 
-            # By name, because the module of Sobol's points imports scipy.stats, which takes half a second.
             sampler = make_sampler("growing" if world.space.cube_dim <= GROWING else "sobol")
         points = _draw(sampler, min(self.first, budget.samples), problem, None)
         how = str(rule), connector_of(world), self.edge_cost, self.links
