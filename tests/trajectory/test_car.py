@@ -139,6 +139,27 @@ def test_with_limited_steering_a_blend_is_faster_than_a_stop_and_no_blend_turns_
     assert 0.5 * blended.deviation < off <= blended.deviation + length / 2000
 
 
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("turned", [0.01, -0.3, 0.9])
+def test_a_turn_between_straight_drives_is_replaced_as_a_whole_by_a_wider_one(turned, backwards):
+    radius, sense = 0.5, -1.0 if backwards else 1.0
+    pieces = np.array([[0.0, 1.2], [math.copysign(1.0 / radius, turned), radius * abs(turned)], [0.0, 1.4]])
+    start, limits = np.array([3.0 - sense, 3.0, 0.0]), DriveLimits(speed=1.0, acceleration=0.5, curvature_rate=2.0)
+    pieces[:, 1] *= sense
+    made = car_trajectory(car(turning_radius=radius), start, pieces, limits)
+    assert (made.blends, made.stops) == (2, 0)
+    assert np.abs(made.curvatures).max() < 0.9 / radius
+    keeps(made, limits)
+    at, length = driven(start, pieces.tolist())
+    np.testing.assert_allclose(made.positions[-1], at(1.0), atol=1e-12)
+    path = np.array([at(t)[:2] for t in np.linspace(0.0, 1.0, 2001)])
+    off = max(np.linalg.norm(path - position[:2], axis=1).min() for position in made.positions[::10])
+    assert 0.9 * made.deviation - length / 2000 < off <= made.deviation + length / 2000
+    if abs(turned) < 0.1:
+        # Hardly longer than the time of a straight drive of 2.6 m, which is 2 s and 1.6 m at full speed.
+        assert made.duration == pytest.approx(4.6, abs=0.2)
+
+
 @pytest.mark.parametrize("wall", [True, False])
 def test_where_a_wall_leaves_no_way_to_swing_out_the_car_stops_to_steer(wall):
     cells = EMPTY.copy()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -12,13 +12,17 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._native.drive import Steering
 from evenroad.driving.car_world import CarWorld
-from evenroad.trajectory.clothoid import AFTER, BEFORE, LONGEST, OFF, Blend, blend_of, poses_on, starts_of
+from evenroad.trajectory.clothoid import AFTER, BEFORE, LONGEST, OFF, Blend, blend_of, corner_of, poses_on, starts_of
 from evenroad.trajectory.drive_limits import DriveLimits
 
 _TRIES = 6
 """Number of lengths that are tried at a corner, each half of the one before; then the car stops there."""
 _GROWN = 2e-3
 """By how much a footprint is larger in proofs of clothoids [cells]: the arcs in their place are off by less."""
+_SHARES = 1.0, 0.5, 0.2
+"""Lengths that are tried for the blend of a whole turn, between that of the turn and the longest."""
+_WIDEST = 2.5
+"""Largest angle of a turn that is replaced as a whole [rad]."""
 _NO_LENGTH = 1e-9
 """Share of a piece that is always left."""
 _NO_CURVATURE = 1e-9
@@ -34,27 +38,65 @@ class Blended(NamedTuple):
 
 
 def with_blends(world: CarWorld, start: Floats, pieces: Floats, limits: DriveLimits, deviation: float) -> Blended:
-    """Return pieces, (k, 3), with a blend at each corner of a straight drive and a turn where one is proved free."""
+    """Return pieces, (k, 3), with blends where the curvature jumps between a straight drive and a turn.
+
+    A turn between two straight drives is replaced as a whole where that is proved free, and else each jump on its own.
+    """
     straight, lengths = pieces[:, 0] == 0.0, np.abs(pieces[:, 2])
-    is_corner = (straight[1:] != straight[:-1]) & (pieces[1:, 2] * pieces[:-1, 2] > 0.0)
-    # A piece between two corners leaves half of its length to each.
-    between = np.append(is_corner, False) & np.append(False, is_corner)
+    jumps = (straight[1:] != straight[:-1]) & (pieces[1:, 2] * pieces[:-1, 2] > 0.0)
+    # A piece between two jumps leaves half of its length to each.
+    between = np.append(jumps, False) & np.append(False, jumps)
     usable = lengths * np.where(between, 0.5, 1.0) * (1.0 - _NO_LENGTH)
-    starts, left, found, near = starts_of(start, pieces), lengths.copy(), {}, nearer(world)
-    for i in np.flatnonzero(is_corner).tolist():
-        for blend in _tried(pieces[i], pieces[i + 1], usable[i : i + 2], limits, deviation):
+    starts, left, near = starts_of(start, pieces), lengths.copy(), nearer(world)
+    found: dict[int, Blend] = {}
+    count = 0
+
+    def is_found(i: int, last: int, blends: Iterable[Blend]) -> bool:
+        """Say whether a blend from piece i to the `last` is free, and keep it."""
+        for blend in blends:
             begin = poses_on(starts[i : i + 1], pieces[i : i + 1], np.array([lengths[i] - blend.before]))[0]
             if clothoids_free(near, begin, blend.pieces):
                 found[i] = blend
                 left[i] -= blend.before
-                left[i + 1] -= blend.after
-                break
+                left[last] -= blend.after
+                return True
+        return False
+
+    for i in np.flatnonzero(between & ~straight).tolist():
+        if is_found(i - 1, i + 1, _around(pieces[i], usable[[i - 1, i + 1]], limits, deviation)):
+            left[i], jumps[i - 1], jumps[i] = 0.0, False, False
+            count += 2
+    for i in np.flatnonzero(jumps).tolist():
+        if is_found(i, i + 1, _tried(pieces[i], pieces[i + 1], usable[i : i + 2], limits, deviation)):
+            count += 1
     rows = []
     for i, (first, last, signed) in enumerate(pieces):
-        rows.append(np.array([[first, last, np.copysign(left[i], signed)]]))
+        if left[i] > 0.0:
+            rows.append(np.array([[first, last, np.copysign(left[i], signed)]]))
         if i in found:
             rows.append(found[i].pieces)
-    return Blended(np.concatenate(rows), len(found), max((each.deviation for each in found.values()), default=0.0))
+    return Blended(np.concatenate(rows), count, max((each.deviation for each in found.values()), default=0.0))
+
+
+def _around(turn: Floats, usable: Floats, limits: DriveLimits, deviation: float) -> Iterator[Blend]:
+    """Yield pairs of clothoids that replace a turn between straight drives: the longest that does not slow the car down
+    or that fits, and shorter ones.  None is as sharp as the turn.
+    """
+    curvature, length = abs(float(turn[0])), abs(float(turn[2]))
+    turned = curvature * length
+    if turned > _WIDEST:
+        return
+    unit = corner_of(turned)
+    assert limits.curvature_rate is not None, "else nothing is blended"
+    # Of the turn, as of the unit: how far its endpoints and its middle are from where the straight drives would meet.
+    before, middle = math.tan(0.5 * turned) / curvature, (1.0 / math.cos(0.5 * turned) - 1.0) / curvature
+    wanted = max(math.sqrt(turned * limits.speed / limits.curvature_rate), turned * limits.speed**2 / limits.across)
+    most = min((min(usable) + before) / unit.before, (deviation + middle) / unit.deviation, max(wanted, length))
+    for share in _SHARES if most >= length else ():
+        half = length + share * (most - length)
+        pieces = unit.pieces * [np.sign(turn[0]) / half, np.sign(turn[0]) / half, np.copysign(half, turn[2])]
+        reach = half * unit.before - before
+        yield Blend(pieces, reach, reach, abs(half * unit.deviation - middle))
 
 
 def _tried(first: Floats, second: Floats, usable: Floats, limits: DriveLimits, deviation: float) -> Iterator[Blend]:

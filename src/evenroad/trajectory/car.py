@@ -30,9 +30,9 @@ def car_trajectory(
 ) -> CarTrajectory:
     """Return the fastest trajectory of a car along pieces, proved free as it is driven.
 
-    Where the steering is limited, each jump of the curvature between a straight drive and a turn becomes two clothoids.
-    If they are not proved free they become shorter, and at last the car stops to steer, as it does at every jump
-    between two turns.
+    Where the steering is limited, a turn between straight drives becomes two clothoids, or each jump of the curvature
+    between a straight drive and a turn does.  If they are not proved free they become shorter, and at last the car
+    stops to steer, as it does at every jump between two turns.  At the start its wheels are turned already.
 
     Parameters
     ----------

@@ -105,3 +105,16 @@ def blend_of(length: float) -> Blend:
     x, y, _ = poses_on(starts[number], pieces[number], along).T
     off_turn = np.abs(np.hypot(x - before, y - 1.0) - 1.0)
     return Blend(pieces, before, after, float(np.where(x < before, np.abs(y), off_turn).max()))
+
+
+def corner_of(turned: float) -> Blend:
+    """Return two clothoids of length 1 that turn to the left by an angle, 0 < turned < pi, from one straight drive to
+    another.
+
+    `before` and `after` are the lengths from their endpoints to where the straight drives would meet, and `deviation`
+    is the distance of their middle from there.
+    """
+    pieces = np.array([[0.0, turned, 1.0], [turned, 0.0, 1.0]])
+    x, y, half = starts_of(np.zeros(3), pieces[:1])[1]
+    reach = float(x + y * np.tan(half))
+    return Blend(pieces, reach, reach, float(y / np.cos(half)))

@@ -54,6 +54,11 @@ class DriveLimits:
         """Largest acceleration and deceleration along the path."""
         return self.acceleration or self.speed / SECONDS_TO_FULL_SPEED
 
+    @property
+    def across(self) -> float:
+        """Largest acceleration across the path."""
+        return self.lateral or self.push
+
     def along(self, curvature: float, change: float) -> tuple[float, float]:
         """Return the largest speed and acceleration at a curvature, >= 0, of which each unit of length changes so much.
 
@@ -66,7 +71,7 @@ class DriveLimits:
         # Where the curvature changes, half of the angular acceleration is for that.
         half = 0.5 if change > 0.0 else 1.0
         if curvature > 0.0:
-            fastest = min(fastest, math.sqrt((self.lateral or push) / curvature), turning / curvature)
+            fastest = min(fastest, math.sqrt(self.across / curvature), turning / curvature)
             push = min(push, half * turning_push / curvature)
         if change > 0.0:
             fastest = min(fastest, math.sqrt(half * turning_push / change), (self.curvature_rate or math.inf) / change)
