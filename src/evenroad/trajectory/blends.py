@@ -49,33 +49,34 @@ def with_blends(world: CarWorld, start: Floats, pieces: Floats, limits: DriveLim
     usable = lengths * np.where(between, 0.5, 1.0) * (1.0 - _NO_LENGTH)
     starts, left, near = starts_of(start, pieces), lengths.copy(), nearer(world)
     found: dict[int, Blend] = {}
-    count = 0
 
-    def is_found(i: int, last: int, blends: Iterable[Blend]) -> bool:
-        """Say whether a blend from piece i to the `last` is free, and keep it."""
+    def first_free(i: int, blends: Iterable[Blend]) -> Blend | None:
+        """Return the first of blends from piece i on that is free."""
         for blend in blends:
             begin = poses_on(starts[i : i + 1], pieces[i : i + 1], np.array([lengths[i] - blend.before]))[0]
             if clothoids_free(near, begin, blend.pieces):
-                found[i] = blend
-                left[i] -= blend.before
-                left[last] -= blend.after
-                return True
-        return False
+                return blend
+        return None
 
+    still = jumps.copy()
     for i in np.flatnonzero(between & ~straight).tolist():
-        if is_found(i - 1, i + 1, _around(pieces[i], usable[[i - 1, i + 1]], limits, deviation)):
-            left[i], jumps[i - 1], jumps[i] = 0.0, False, False
-            count += 2
-    for i in np.flatnonzero(jumps).tolist():
-        if is_found(i, i + 1, _tried(pieces[i], pieces[i + 1], usable[i : i + 2], limits, deviation)):
-            count += 1
+        blend = first_free(i - 1, _around(pieces[i], usable[[i - 1, i + 1]], limits, deviation))
+        if blend is not None:
+            found[i - 1], still[i - 1 : i + 1] = blend, False
+            left[i - 1 : i + 2] -= blend.before, lengths[i], blend.after
+    for i in np.flatnonzero(still).tolist():
+        blend = first_free(i, _tried(pieces[i], pieces[i + 1], usable[i : i + 2], limits, deviation))
+        if blend is not None:
+            found[i], still[i] = blend, False
+            left[i : i + 2] -= blend.before, blend.after
     rows = []
     for i, (first, last, signed) in enumerate(pieces):
         if left[i] > 0.0:
             rows.append(np.array([[first, last, np.copysign(left[i], signed)]]))
         if i in found:
             rows.append(found[i].pieces)
-    return Blended(np.concatenate(rows), count, max((each.deviation for each in found.values()), default=0.0))
+    blends = int(np.count_nonzero(jumps & ~still))
+    return Blended(np.concatenate(rows), blends, max((each.deviation for each in found.values()), default=0.0))
 
 
 def _around(turn: Floats, usable: Floats, limits: DriveLimits, deviation: float) -> Iterator[Blend]:
