@@ -23,7 +23,7 @@ from evenroad._seal import has_digest, with_digest
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.planning.result import PlanResult, Status
 from evenroad.points import Origin
-from evenroad.saved.world_value import value_of, world_of
+from evenroad.world import World
 
 
 def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, object]:
@@ -78,7 +78,7 @@ def plan_record(result: PlanResult, query: Mapping[str, object]) -> dict[str, ob
         "timings": {phase: round(value, 6) for phase, value in result.timings.items()},
         "stages": [asdict(stage) for stage in result.stages],
         "origin": asdict(result.origin),
-        **({} if query else {"world": value_of(result.world)}),
+        **({} if query else {"world": _value_of(result.world)}),
         "versions": versions(),
     }
 
@@ -224,11 +224,20 @@ def plan_of(record: object, path: str | os.PathLike[str]) -> tuple[PlanResult, d
         set_fields(result, nearest=None if pair is None else (str(pair[0]), str(pair[1])))
         set_fields(result, **{name: record.get(name) for name in ("clearance", "length", "bodies")})
         if record.get("world") is not None:
+            # Imported late, as below: plans of `evenroad plan` name their files instead.
+            from evenroad.saved.world_value import world_of
+
             set_fields(result, world=world_of(record["world"], path))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
         raise BrokenFile(f"{path} is not a plan of evenroad: {why}") from error
     return result, query
+
+
+def _value_of(world: World | None) -> dict[str, Json] | None:
+    from evenroad.saved.world_value import value_of
+
+    return value_of(world)
 
 
 def _as_texts(pieces: Floats) -> list[list[float | str]]:
