@@ -2,7 +2,7 @@
 #ifndef EVENROAD_CELLS_H
 #define EVENROAD_CELLS_H
 
-#include "model.h"
+#include "witnesses.h"
 
 enum { MOST_COLUMNS = 8, UNITS = 1 << 24 };
 
@@ -29,11 +29,10 @@ typedef struct {
   const Model* model;
   double smallest; /* overlap of a cell [m] */
   size_t blocked;
-  bool* used;    /* for each two bodies, whether a witness that blocks a cell is about them */
+  const Witness* witnesses;
   bool* columns; /* that a tree has */
 } NoPath;
 
 NoPath verify_no_path(const Inputs* inputs, const Certificate* certificate);
-const char* name_of(const Model* model, size_t body); /* of a body, or of an obstacle behind them */
 
 #endif

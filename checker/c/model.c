@@ -24,7 +24,7 @@ static double held_value(const Certificate* certificate, const char* name) {
 
 /* A joint as `multiplier * value + offset` of a column, or as its constant offset if none moves it. */
 static Frame value_of(const Inputs* inputs, const Certificate* certificate, const Joint* joint) {
-  Frame frame = {.multiplier = 1, .axis = joint->axis, .slides = joint->kind == SLIDES};
+  Frame frame = {.joint = joint, .multiplier = 1, .axis = joint->axis, .slides = joint->kind == SLIDES};
   for (int i = 0; joint->follows != NONE; ++i) {
     if (i == LONGEST_MIMICRY) fail(BAD_INPUT, "joint %s mimics too many joints", joint->name);
     frame.offset += frame.multiplier * joint->offset;
@@ -77,7 +77,6 @@ static Place behind(Model* model, const Place* place, const Joint* joint) {
   }
   frame.parent = place->frame;
   frame.fixed = fixed;
-  frame.length = length(fixed.at) + (frame.slides ? largest_value(model, &frame) : 0);
   model->frames[model->frame_count] = frame;
   return (Place){joint->child, model->frame_count++, identity()};
 }
@@ -130,48 +129,69 @@ static void refuse_unknown_names(const Inputs* inputs, const Certificate* certif
   }
 }
 
-bool range_of(const Inputs* inputs, const Certificate* certificate, size_t column, double range[2]) {
-  const Joint* joint = inputs->joints + joint_named(inputs, certificate->joints[column]);
-  double limits[2][2] = {{joint->lower, joint->upper}, {0, 2 * NO_RANGE}};
-  if (!joint->limited) limits[0][1] = limits[0][0] + 2 * NO_RANGE;
-  numbers_of(inputs->limits, certificate->joints[column], limits[1], 2, "limits");
-  range[0] = -INFINITY;
-  range[1] = INFINITY;
-  for (int i = 0; i < 2; ++i) {
-    if (limits[i][1] - limits[i][0] > NO_RANGE) continue;
-    range[0] = fmax(range[0], limits[i][0] - LIMIT_TOLERANCE);
-    range[1] = fmin(range[1], limits[i][1] + LIMIT_TOLERANCE);
-  }
-  return range[0] > -INFINITY;
+/* Narrow a range to that of a joint that follows another one, unless this leaves nothing of it. */
+static void follow(const Frame* frame, double range[2]) {
+  const Joint* joint = frame->joint;
+  if (!joint->limited || joint->upper - joint->lower > NO_RANGE || frame->multiplier == 0) return;
+  double a = (joint->lower - frame->offset) / frame->multiplier, b = (joint->upper - frame->offset) / frame->multiplier;
+  double low = fmax(range[0], fmin(a, b)), high = fmin(range[1], fmax(a, b));
+  if (!(high - low > ROUNDING)) return;
+  range[0] = low;
+  range[1] = high;
 }
 
-static void require_limits(const Inputs* inputs, const Certificate* certificate) {
-  for (size_t column = 0; column < certificate->joint_count; ++column) {
-    double range[2];
-    range_of(inputs, certificate, column, range);
-    for (size_t i = 0; i < certificate->points; ++i) {
-      double value = certificate->values[i * certificate->joint_count + column];
-      if (range[0] <= value && value <= range[1]) continue;
-      fail(REFUSED, "%.60s leaves its limits", certificate->joints[column]);
-    }
-  }
-}
-
-/* Find the largest values of the joints: those of the points or, if they may be anywhere, the ends of their ranges. */
-static void find_extremes(Model* model) {
+/* Find how far each joint may go, by its limits, by those of joints that follow it, and by those of the scene. */
+static void find_ranges(Model* model) {
+  const Inputs* inputs = model->inputs;
   const Certificate* certificate = model->certificate;
+  model->ranges = take(certificate->joint_count, sizeof *model->ranges);
+  for (size_t column = 0; column < certificate->joint_count; ++column) {
+    const Joint* joint = inputs->joints + joint_named(inputs, certificate->joints[column]);
+    double *range = model->ranges[column], scene[2] = {0, 2 * NO_RANGE};
+    bool limited = joint->limited && joint->upper - joint->lower <= NO_RANGE;
+    range[0] = limited ? joint->lower : -INFINITY;
+    range[1] = limited ? joint->upper : INFINITY;
+    for (size_t i = 1; i < model->frame_count; ++i) {
+      if (model->frames[i].column == column && model->frames[i].joint != joint) follow(model->frames + i, range);
+    }
+    range[0] -= LIMIT_TOLERANCE;
+    range[1] += LIMIT_TOLERANCE;
+    numbers_of(inputs->limits, certificate->joints[column], scene, 2, "limits");
+    if (scene[1] - scene[0] > NO_RANGE) continue;
+    range[0] = fmax(range[0], scene[0] - LIMIT_TOLERANCE);
+    range[1] = fmin(range[1], scene[1] + LIMIT_TOLERANCE);
+  }
+}
+
+static void require_limits(const Model* model) {
+  const Certificate* certificate = model->certificate;
+  for (size_t i = 0; i < certificate->points * certificate->joint_count; ++i) {
+    const double* range = model->ranges[i % certificate->joint_count];
+    if (range[0] <= certificate->values[i] && certificate->values[i] <= range[1]) continue;
+    fail(REFUSED, "%.60s leaves its limits", certificate->joints[i % certificate->joint_count]);
+  }
+}
+
+/* Find the largest values of the joints, which are those of the points or, if they may be anywhere, the ends of their
+   ranges; and how far frames are from those before them at most. */
+static void find_lengths(Model* model) {
+  const Certificate* certificate = model->certificate;
+  size_t joints = certificate->joint_count;
   model->extremes = certificate->values;
   model->extreme_count = certificate->points;
-  if (!certificate->of_no_path) return;
-  double* ends = take(2 * certificate->joint_count, sizeof *ends);
-  for (size_t i = 0; i < certificate->joint_count; ++i) {
-    double range[2] = {-PI, PI};
-    if (!range_of(model->inputs, certificate, i, range)) range[0] = -(range[1] = PI);
-    ends[i] = range[0];
-    ends[certificate->joint_count + i] = range[1];
+  if (certificate->of_no_path) {
+    double* ends = take(2 * joints, sizeof *ends);
+    for (size_t i = 0; i < 2 * joints; ++i) {
+      double end = model->ranges[i % joints][i / joints];
+      ends[i] = isfinite(end) ? end : i < joints ? -PI : PI;
+    }
+    model->extremes = ends;
+    model->extreme_count = 2;
   }
-  model->extremes = ends;
-  model->extreme_count = 2;
+  for (size_t i = 1; i < model->frame_count; ++i) {
+    Frame* frame = model->frames + i;
+    frame->length = length(frame->fixed.at) + (frame->slides ? largest_value(model, frame) : 0);
+  }
 }
 
 /* The largest number of joints from the root to a link. */
@@ -205,7 +225,9 @@ static void require_bounded(const Model* model) {
     if (node->frame) robot = fmax(robot, reach);
     farthest = fmax(farthest, reach);
   }
-  for (size_t i = 0; i < model->inputs->obstacle_count; ++i) farthest = fmax(farthest, reach_of(model->obstacles + i));
+  for (size_t i = model->body_count; i < model->all_count; ++i) {
+    farthest = fmax(farthest, reach_of(model->bodies[i].solids[0]));
+  }
   for (size_t i = 0; i < certificate->kept_count; ++i) {
     const Place* place = place_of_link(model, certificate->kept[i].link);
     Vector point = placed(&place->pose, certificate->kept[i].part);
@@ -226,11 +248,12 @@ Model* model_of(const Inputs* inputs, const Certificate* certificate) {
   model->inputs = inputs;
   model->certificate = certificate;
   model->frames = take(inputs->joint_count + 1, sizeof *model->frames);
-  model->bodies = take(inputs->link_count + inputs->attached_count + 1, sizeof *model->bodies);
+  model->bodies = take(inputs->link_count + inputs->attached_count + inputs->obstacle_count + 1, sizeof *model->bodies);
   refuse_unknown_names(inputs, certificate);
-  require_limits(inputs, certificate);
-  find_extremes(model);
   walk(model);
+  find_ranges(model);
+  require_limits(model);
+  find_lengths(model);
   find_allowed(model);
   find_pairs(model);
   require_bounded(model);

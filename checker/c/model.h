@@ -8,6 +8,7 @@
 
 /* A frame behind a joint that moves; frame 0 is the root's. */
 typedef struct {
+  const Joint* joint;
   size_t parent, column; /* of the points */
   double multiplier, offset;
   Pose fixed; /* of the joint, in the parent's frame */
@@ -24,7 +25,7 @@ typedef struct {
 
 typedef struct {
   const char* name;
-  size_t frame, link, attached; /* `attached` is NONE for a link */
+  size_t frame, link, attached; /* NONE for what is no link, or is not attached */
   double padding;
   Solid** solids;
   size_t count;
@@ -46,17 +47,15 @@ typedef struct {
   Frame* frames;
   Body* bodies;
   Pair* pairs;
-  Solid* obstacles;
+  double (*ranges)[2];    /* how far the joints of the points may go: infinitely far without limits */
   const double* extremes; /* of the joints, as rows like the points */
   size_t extreme_count;
   size_t* order;        /* of links, depth first */
   const Place* of_link; /* for each link */
   size_t* group;        /* of each body, the first body of its node against obstacles */
-  size_t frame_count, body_count, pair_count;
+  size_t frame_count, pair_count;
+  size_t body_count, all_count; /* all: with the obstacles, which are bodies of frame 0 behind those of the robot */
 } Model;
-
-/* The range of a column in the URDF and the scene; false if it has none. */
-bool range_of(const Inputs* inputs, const Certificate* certificate, size_t column, double range[2]);
 
 /* Where the link of a constraint or goal is; refuses a link that there is not. */
 const Place* place_of_link(const Model* model, const char* link);

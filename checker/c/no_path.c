@@ -1,185 +1,15 @@
 #include <string.h>
 
 #include "cells.h"
-#include "pairs.h"
 #include "proof.h"
-#include "solids.h"
-
-static const double LEAST = 1e-9;
-
-/* A ball inside of a body. */
-typedef struct {
-  size_t body;
-  Vector centre;
-  double radius;
-} Ball;
-
-/* What a ball overlaps with: a shape of a body, or another ball. */
-typedef struct {
-  size_t body;
-  const Solid* solid; /* or NULL */
-  const Ball* ball;
-} Target;
 
 typedef struct {
   const Model* model;
-  const Ball* balls;
-  const Target* targets;
+  const Witness* witnesses;
   Axes axes;
   Moved* moved;
   size_t* chain; /* room for the frames of one */
 } Checker;
-
-static bool is_obstacle(const Model* model, size_t body) { return body >= model->body_count; }
-
-const char* name_of(const Model* model, size_t body) {
-  if (!is_obstacle(model, body)) return model->bodies[body].name;
-  return model->inputs->obstacles[body - model->body_count].name;
-}
-
-static size_t frame_of(const Model* model, size_t body) {
-  return is_obstacle(model, body) ? 0 : model->bodies[body].frame;
-}
-
-/* The number of solids of a body, and one of them. */
-static size_t solid_count(const Model* model, size_t body) {
-  return is_obstacle(model, body) ? 1 : model->bodies[body].count;
-}
-
-static Solid* solid_at(const Model* model, size_t body, size_t i) {
-  return is_obstacle(model, body) ? model->obstacles + (body - model->body_count) : model->bodies[body].solids[i];
-}
-
-/* Tell whether a witness may name a solid: a mesh, a cloud or a thin box has no distance here. */
-static bool has_distance(const Solid* solid) {
-  if (solid->shape->kind == MESH || solid->shape->kind == CLOUD) return false;
-  for (int i = 0; solid->shape->kind == BOX && i < 3; ++i) {
-    if (solid->shape->size[i] < 2 * LEAST) return false;
-  }
-  return true;
-}
-
-/* The distance of a point from a solid; less than 0 inside. */
-static double distance(const Solid* solid, Vector point) {
-  double o[3] = {0, 0, 0};
-  const Vector *points = solid->points, *last = points + solid->point_count - 1;
-  size_t count = solid->point_count == 8 ? 3 : 2;
-  Vector from = difference(point, scaled(0.5, sum(points[0], *last)));
-  if (count == 3) {
-    for (int i = 0; i < 3; ++i) {
-      Vector half = scaled(0.5, difference(points[1 << i], points[0]));
-      o[i] = fabs(dot(from, half)) / length(half) - length(half);
-    }
-  } else {
-    double along = dot(from, solid->axis);
-    o[0] = length(difference(from, scaled(along, solid->axis))) - solid->disc;
-    o[1] = fabs(along) - length(difference(*last, points[0])) / 2;
-  }
-  double outside = 0, inside = -INFINITY;
-  for (size_t i = 0; i < count; ++i) {
-    outside = hypot(outside, fmax(o[i], 0));
-    inside = fmax(inside, o[i]);
-  }
-  return outside + fmin(inside, 0) - solid->ball;
-}
-
-/* The distance of a point from a segment. */
-static double from_segment(Vector point, Vector a, Vector b) {
-  Vector line = difference(b, a), from = difference(point, a);
-  double size = dot(line, line), share = size > 0 ? fmin(1, fmax(0, dot(from, line) / size)) : 0;
-  return length(difference(from, scaled(share, line)));
-}
-
-/* The distance of a point from a triangle: from its plane where the point is above it, else from its edges. */
-static double from_triangle(Vector point, const Vector* c) {
-  Vector normal = cross(difference(c[1], c[0]), difference(c[2], c[0]));
-  double area = length(normal), nearest = INFINITY;
-  bool above = area > 0;
-  for (int i = 0; i < 3; ++i) {
-    Vector a = c[i], b = c[(i + 1) % 3];
-    above = above && dot(cross(difference(b, a), difference(point, a)), normal) >= 0;
-    nearest = fmin(nearest, from_segment(point, a, b));
-  }
-  return above ? fmin(nearest, fabs(dot(difference(point, c[0]), normal)) / area) : nearest;
-}
-
-static bool is_inside_surface(const Solid* solid, const Ball* ball) {
-  find_pieces(solid->shape->mesh);
-  const Mesh* mesh = solid->shape->mesh;
-  for (size_t i = 0; i < mesh->piece_count; ++i) {
-    const Piece* piece = mesh->pieces + i;
-    double nearest = piece->closed ? INFINITY : -INFINITY;
-    for (size_t k = 0; k < piece->count && nearest >= ball->radius + LEAST; ++k) {
-      Vector c[3];
-      for (size_t n = 0; n < 3; ++n) c[n] = corner_at(solid, mesh->members[piece->begin + k], n);
-      nearest = fmin(nearest, from_triangle(ball->centre, c));
-    }
-    if (nearest >= ball->radius + LEAST && is_inside(ball->centre, solid, piece)) return true;
-  }
-  return false;
-}
-
-static void require_inside_body(const Model* model, const Ball* ball) {
-  for (size_t i = 0; i < solid_count(model, ball->body); ++i) {
-    const Solid* solid = solid_at(model, ball->body, i);
-    if (has_distance(solid) && distance(solid, ball->centre) <= -ball->radius - LEAST) return;
-    if (is_surface(solid) && is_inside_surface(solid, ball)) return;
-  }
-  fail(REFUSED, "a ball is not inside of its body");
-}
-
-static Ball* read_balls(const Model* model) {
-  const Certificate* certificate = model->certificate;
-  Ball* balls = take(certificate->ball_count + 1, sizeof *balls);
-  for (size_t i = 0; i < certificate->ball_count; ++i) {
-    const uint8_t* data = certificate->balls + 18 * i;
-    double numbers[4];
-    for (int k = 0; k < 4; ++k) {
-      numbers[k] = float_at(data + 2 + 4 * k);
-      if (!(fabs(numbers[k]) <= FARTHEST)) fail(REFUSED, "a ball that is no number, or too large");
-    }
-    Ball ball = {(size_t)little_endian(data, 2), {numbers[0], numbers[1], numbers[2]}, numbers[3]};
-    if (ball.body >= model->body_count + model->inputs->obstacle_count) fail(REFUSED, "a ball in no body");
-    if (!(ball.radius >= 0)) fail(REFUSED, "a ball of a radius below 0");
-    require_inside_body(model, &ball);
-    balls[i] = ball;
-  }
-  return balls;
-}
-
-/* What witnesses name: every shape that is not made of triangles, in the order of bodies, then the balls. */
-static Target* targets_of(const Model* model, const Ball* balls, size_t* count) {
-  size_t bodies = model->body_count + model->inputs->obstacle_count, room = model->certificate->ball_count + 1;
-  for (size_t body = 0; body < bodies; ++body) room += solid_count(model, body);
-  Target* targets = take(room, sizeof *targets);
-  for (size_t body = 0; body < bodies; ++body) {
-    for (size_t i = 0; i < solid_count(model, body); ++i) {
-      const Solid* solid = solid_at(model, body, i);
-      if (!is_surface(solid)) targets[(*count)++] = (Target){body, solid, NULL};
-    }
-  }
-  for (size_t i = 0; i < model->certificate->ball_count; ++i) {
-    targets[(*count)++] = (Target){balls[i].body, NULL, balls + i};
-  }
-  return targets;
-}
-
-/* What two bodies keep from each other; fails unless the claim is about them. */
-static double kept_by(const Model* model, size_t a, size_t b) {
-  if (is_obstacle(model, a)) {
-    size_t body = a;
-    a = b;
-    b = body;
-  }
-  bool of_claim = !is_obstacle(model, a) && frame_of(model, a) != frame_of(model, b);
-  if (of_claim && is_obstacle(model, b)) {
-    const Body* body = model->bodies + a;
-    if (!body->allowed[b - model->body_count]) return model->certificate->clearance + body->padding;
-  } else if (of_claim && !is_left_out(model, model->bodies + a, model->bodies + b)) {
-    return 0;
-  }
-  fail(REFUSED, "a witness is about no pair of the claim");
-}
 
 /* Half the side of a cell, by which the joint of a frame moves; fails if its column is not the tree's. */
 static double half_side(const Checker* checker, const Cell* cell, size_t frame) {
@@ -201,19 +31,20 @@ static double moved_by(const Checker* checker, const Cell* cell, size_t frame, V
 }
 
 /* By how much a witness overlaps in every state of a cell, in whose middle the frames are. */
-static double overlap(const Checker* checker, const Cell* cell, const Ball* ball, const Target* target) {
+static double overlap(const Checker* checker, const Cell* cell, const Witness* witness) {
   const Model* model = checker->model;
-  size_t a = frame_of(model, ball->body), b = frame_of(model, target->body), from = shared(model, a, b), count = 0;
-  double kept = kept_by(model, ball->body, target->body), moves = 0;
+  const Ball *ball = witness->ball, *other = witness->other;
+  size_t a = model->bodies[ball->body].frame, b = model->bodies[witness->body].frame, count = 0;
+  size_t from = shared(model, a, b);
   Vector centre = placed(&checker->moved[a].pose, ball->centre);
+  double moves = 0;
   for (size_t k = a; k != from; k = model->frames[k].parent) moves = moved_by(checker, cell, k, centre, moves);
   for (size_t k = b; k != from; k = model->frames[k].parent) checker->chain[count++] = k;
   while (count) moves = moved_by(checker, cell, checker->chain[--count], centre, moves);
   const Pose* pose = &checker->moved[b].pose;
   Vector seen = turned_in(pose, difference(centre, pose->at));
-  double apart = target->solid ? distance(target->solid, seen)
-                               : length(difference(seen, target->ball->centre)) - target->ball->radius;
-  return ball->radius + kept - apart - moves;
+  double apart = other ? length(difference(seen, other->centre)) - other->radius : distance_from(witness->solid, seen);
+  return ball->radius + witness->kept - apart - moves;
 }
 
 static void place_middle(const Checker* checker, const Cell* cell) {
@@ -239,8 +70,9 @@ static Axes axes_of(const Model* model, const Tree* tree) {
     for (size_t k = 0; k < i; ++k) {
       if (axes.columns[k] == column) fail(REFUSED, "cells with a column twice");
     }
-    axes.endless[i] = !range_of(model->inputs, model->certificate, column, axes.range[i]);
-    if (axes.endless[i]) axes.range[i][0] = -(axes.range[i][1] = PI);
+    axes.endless[i] = isinf(model->ranges[column][0]);
+    axes.range[i][0] = axes.endless[i] ? -PI : model->ranges[column][0];
+    axes.range[i][1] = axes.endless[i] ? PI : model->ranges[column][1];
     if (!(axes.range[i][0] < axes.range[i][1])) fail(REFUSED, "a range of nothing");
     for (size_t k = 1; k < model->frame_count; ++k) {
       const Frame* frame = model->frames + k;
@@ -252,10 +84,9 @@ static Axes axes_of(const Model* model, const Tree* tree) {
 }
 
 /* Walk through a tree: gather its open cells, and check what blocks the others. */
-static Cell* open_cells(Checker* checker, const Tree* tree, size_t target_count, NoPath* to, size_t* open_count) {
+static Cell* open_cells(Checker* checker, const Tree* tree, NoPath* to, size_t* open_count) {
   const Certificate* certificate = checker->model->certificate;
   size_t waiting = 1, columns = checker->axes.count, bytes = bytes_of_answer(certificate, tree);
-  size_t bodies = checker->model->body_count + checker->model->inputs->obstacle_count;
   Cell *cells = take(tree->answer_count + 2, sizeof *cells), *open = take(tree->answer_count + 1, sizeof *open);
   for (size_t i = 0; i < columns; ++i) cells[0].high[i] = UNITS;
   for (size_t i = 0; i < waiting; ++i) {
@@ -274,16 +105,10 @@ static Cell* open_cells(Checker* checker, const Tree* tree, size_t target_count,
     } else {
       size_t witness = answer - columns - 1;
       if (witness >= certificate->witness_count) fail(REFUSED, "there is no witness %zu", witness);
-      size_t ball = (size_t)little_endian(certificate->witnesses + 4 * witness, 2);
-      size_t target = (size_t)little_endian(certificate->witnesses + 4 * witness + 2, 2);
-      if (ball >= certificate->ball_count || target >= target_count) fail(REFUSED, "a witness of nothing");
-      const Target* of = checker->targets + target;
-      if (of->solid && !has_distance(of->solid)) fail(REFUSED, "a witness of a solid that has no distance");
       place_middle(checker, cell);
-      double by = overlap(checker, cell, checker->balls + ball, of);
-      if (!(by > LEAST)) fail(REFUSED, "a cell is not blocked (%.3g m)", by);
+      double by = overlap(checker, cell, checker->witnesses + witness);
+      if (!(by > SPARE)) fail(REFUSED, "a cell is not blocked (%.3g m)", by);
       to->smallest = fmin(to->smallest, by);
-      to->used[checker->balls[ball].body * bodies + of->body] = true;
       ++to->blocked;
     }
   }
@@ -301,9 +126,8 @@ static bool is_known(const Checker* checker, size_t frame) {
 
 /* How far a joint slides at most; nothing bounds one without limits. */
 static double most_slide(const Model* model, const Frame* frame) {
-  double range[2];
+  const double* range = model->ranges[frame->column];
   if (!frame->slides) return 0;
-  if (!range_of(model->inputs, model->certificate, frame->column, range)) return INFINITY;
   return fmax(fabs(frame->multiplier * range[0] + frame->offset), fabs(frame->multiplier * range[1] + frame->offset));
 }
 
@@ -336,7 +160,7 @@ static bool is_beyond(const Checker* checker, const Cell* cell, const PoseGoal* 
   point = placed(&checker->moved[last].pose, point);
   for (size_t k = last; k; k = frames[k].parent) moves = moved_by(checker, cell, k, point, moves);
   double away = length(difference(point, target)), least = fmax(0, 2 * longest - most);
-  return away - moves > most + near + LEAST || away + moves < least - near - LEAST;
+  return away - moves > most + near + SPARE || away + moves < least - near - SPARE;
 }
 
 /* Mark the goals, configurations before poses, that the start does not reach in the open cells of a tree. */
@@ -363,13 +187,11 @@ NoPath verify_no_path(const Inputs* inputs, const Certificate* certificate) {
     fail(REFUSED, "robot, SRDF, scene or meshes are not the files that it was written for");
   }
   Model* model = model_of(inputs, certificate);
-  size_t bodies = model->body_count + inputs->obstacle_count, target_count = 0;
-  Checker checker = {.model = model, .balls = read_balls(model)};
-  checker.targets = targets_of(model, checker.balls, &target_count);
+  Checker checker = {.model = model, .witnesses = read_witnesses(model)};
   checker.moved = take(model->frame_count, sizeof *checker.moved);
   checker.chain = take(model->frame_count, sizeof *checker.chain);
   checker.moved[0].pose = identity();
-  NoPath found = {.model = model, .smallest = INFINITY, .used = take(bodies * bodies + 1, sizeof(bool))};
+  NoPath found = {.model = model, .witnesses = checker.witnesses, .smallest = INFINITY};
   found.columns = take(certificate->joint_count, sizeof(bool));
   size_t goals = certificate->goals + certificate->pose_count;
   bool* shown = take(goals, sizeof *shown);
@@ -377,7 +199,7 @@ NoPath verify_no_path(const Inputs* inputs, const Certificate* certificate) {
     size_t open_count = 0;
     checker.axes = axes_of(model, certificate->trees + i);
     for (size_t k = 0; k < checker.axes.count; ++k) found.columns[checker.axes.columns[k]] = true;
-    const Cell* open = open_cells(&checker, certificate->trees + i, target_count, &found, &open_count);
+    const Cell* open = open_cells(&checker, certificate->trees + i, &found, &open_count);
     shut_off(&checker, open, open_count, shown);
   }
   for (size_t i = 0; i < goals; ++i) {

@@ -27,7 +27,7 @@ void find_allowed(Model* model) {
 }
 
 /* Bodies of one frame with the same padding and allowed obstacles, against all other obstacles. */
-static void find_obstacle_pairs(Model* model, Solid** obstacles) {
+static void find_obstacle_pairs(Model* model) {
   size_t count = model->inputs->obstacle_count;
   for (size_t i = 0; i < model->body_count; ++i) {
     const Body* body = model->bodies + i;
@@ -44,7 +44,7 @@ static void find_obstacle_pairs(Model* model, Solid** obstacles) {
     Solid** left = take(count + 1, sizeof *left);
     size_t left_count = 0;
     for (size_t k = 0; k < count; ++k) {
-      if (!body->allowed[k]) left[left_count++] = obstacles[k];
+      if (!body->allowed[k]) left[left_count++] = model->bodies[model->body_count + k].solids[0];
     }
     if (!left_count) continue;
     Pair* pair = model->pairs + model->pair_count++;
@@ -105,17 +105,18 @@ bool is_left_out(const Model* model, const Body* a, const Body* b) {
 void find_pairs(Model* model) {
   const Inputs* inputs = model->inputs;
   size_t count = model->body_count;
-  Pose here = identity();
-  Solid** obstacles = take(inputs->obstacle_count + 1, sizeof *obstacles);
-  model->obstacles = take(inputs->obstacle_count + 1, sizeof *model->obstacles);
-  for (size_t i = 0; i < inputs->obstacle_count; ++i) {
-    Pose pose = composed(&here, &inputs->obstacles[i].shape.pose);
-    model->obstacles[i] = solid_of(&inputs->obstacles[i].shape, &pose);
-    obstacles[i] = model->obstacles + i;
+  model->all_count = count + inputs->obstacle_count;
+  for (size_t i = count; i < model->all_count; ++i) {
+    const Obstacle* obstacle = inputs->obstacles + (i - count);
+    Body body = {.name = obstacle->name, .link = NONE, .attached = NONE, .count = 1};
+    body.solids = take(1, sizeof *body.solids);
+    body.solids[0] = take(1, sizeof **body.solids);
+    *body.solids[0] = solid_of(&obstacle->shape, &obstacle->shape.pose);
+    model->bodies[i] = body;
   }
   model->pairs = take(count + count * count / 2 + 1, sizeof *model->pairs);
   model->group = take(count + 1, sizeof *model->group);
-  find_obstacle_pairs(model, obstacles);
+  find_obstacle_pairs(model);
   for (size_t i = 0; i < model->pair_count; ++i) model->pairs[i].first = group_node(model, model->pairs[i].a);
   for (size_t i = 0; i < count; ++i) {
     for (size_t k = i + 1; k < count; ++k) {

@@ -160,7 +160,7 @@ static void print_pose(const PoseGoal* goal) {
 void print_no_path(const NoPath* shown) {
   const Model* model = shown->model;
   const Certificate* certificate = model->certificate;
-  size_t bodies = model->body_count + model->inputs->obstacle_count, pairs = 0;
+  size_t pairs = 0;
   printf("PROVED: no path leads from the start to any goal: each one touches something");
   print_distances(certificate);
   if (certificate->goals) printf("  goals: %zu configurations\n", certificate->goals);
@@ -178,10 +178,12 @@ void print_no_path(const NoPath* shown) {
   }
   end_list(begun);
   printf("  %zu cells are blocked; smallest overlap of a cell: %.3g m\n", shown->blocked, shown->smallest);
-  for (size_t i = 0; i < bodies * bodies; ++i) pairs += shown->used[i];
+  for (size_t i = 0; i < certificate->witness_count; ++i) pairs += !shown->witnesses[i].repeats;
   printf("pairs that block the way (%zu):\n", pairs);
-  for (size_t i = 0; i < bodies * bodies; ++i) {
-    if (shown->used[i]) printf("  %s - %s\n", name_of(model, i / bodies), name_of(model, i % bodies));
+  for (size_t i = 0; i < certificate->witness_count; ++i) {
+    const Witness* witness = shown->witnesses + i;
+    const char *first = model->bodies[witness->ball->body].name, *second = model->bodies[witness->body].name;
+    if (!witness->repeats) printf("  %s - %s\n", first, second);
   }
   print_not_claimed(model);
 }

@@ -77,6 +77,37 @@ def test_start_and_goals_can_be_compared_with_those_of_a_query(caught):
         assert subprocess.run([program("command"), *words, option, values], capture_output=True).returncode == code
 
 
+def test_every_witness_is_about_a_pair_even_if_it_blocks_no_cell(caught, many):
+    place, data = caught
+    parts = Parts.of(data)
+    assert many.read(place.sources.robot, place.sources.scene) == ACCEPTED
+    # A ball meets itself in no cell.
+    solid = int(parts.witnesses[:, 1].max()) + 1
+    for added, holds in ((parts.witnesses[:1], True), ([[0, len(parts.balls) + solid + 9]], False), ([[0, 0]], False)):
+        forged = replace(parts, witnesses=np.concatenate([parts.witnesses, np.array(added, "<u2")]))
+        assert many.agrees(forged.saying("witnesses", str(len(forged.witnesses))).data, place.inputs) is holds
+
+
+FOLLOWER = """<link name="led"/><joint name="follow" type="revolute"><parent link="base"/><child link="led"/>
+  <axis xyz="0 0 1"/><mimic joint="turn" multiplier="-2" offset="0.5"/><limit lower="{}" upper="{}"/></joint></robot>"""
+
+
+@pytest.mark.parametrize(("low", "high", "range_of_turn"), [(-4.5, 6.5, (-3, 2.5)), (-9, 9, (-3, 3)), (8, 9, (-3, 3))])
+def test_a_joint_keeps_the_limits_of_one_that_follows_it(low, high, range_of_turn, many, tmp_path):
+    """Those that would leave it no range do not count."""
+    place = Place(
+        tmp_path / "led", posts(at(0.7, 0.3), at(-0.7, 0.3)), flat_arm().replace("</robot>", FOLLOWER.format(low, high))
+    )
+    np.testing.assert_allclose(place.world.robot.limits[0], range_of_turn)
+    data = place.certificate([0.0, 0.3], [[2.0, 0.3]])
+    assert many.read(place.sources.robot, place.sources.scene) == ACCEPTED
+    assert many.agrees(data, place.inputs)
+    for goal in (range_of_turn[1], range_of_turn[1] + 1e-3):
+        parts = Parts.of(data)
+        parts.ends[1, 0] = goal
+        assert many.agrees(parts.data, place.inputs) is (goal == range_of_turn[1])
+
+
 def test_a_ball_without_a_radius_is_a_point_of_its_body(caught, many):
     place, data = caught
     parts = Parts.of(data)

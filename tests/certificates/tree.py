@@ -15,7 +15,7 @@ URDF = f"""<robot name="tree">
   <joint name="C" type="revolute"><parent link="b"/><child link="c"/><origin xyz="0 0.3 0" rpy="0 1 0"/>
     <axis xyz="0 1 0"/>{LIMIT}</joint>
   <joint name="D" type="revolute"><parent link="a"/><child link="d"/><origin xyz="-0.1 0.1 0" rpy="0 0 2"/>
-    <axis xyz="0.8 0 0.6"/><mimic joint="C" multiplier="-1.5" offset="0.2"/>{LIMIT}</joint>
+    <axis xyz="0.8 0 0.6"/><mimic joint="C" multiplier="-1.5" offset="0.2"/><limit lower="-6" upper="6"/></joint>
 </robot>
 """
 POST = "obstacles:\n  post: {shape: sphere, radius: 0.05, xyz: [0.4, 0.3, 0.2]}\n"

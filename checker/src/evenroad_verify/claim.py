@@ -185,15 +185,25 @@ def may_touch(inputs: Inputs, bodies: list[Body]) -> set[frozenset[str]]:
 
 
 def ranges_of(inputs: Inputs, frames: Frames, certificate: Certificate) -> Floats:
-    """Return how far the joints of a certificate may go, (joints, 2): infinitely far those without limits."""
-    joints, ranges = {joint.name: joint for joint in frames.joints}, []
-    for name in certificate.joints:
-        low, high = -np.inf, np.inf
-        for least, most in ((joints[name].lower, joints[name].upper), inputs.scene.limits.get(name, (low, high))):
-            if most - least <= ENDLESS:
-                low, high = max(low, least - BEYOND), min(high, most + BEYOND)
-        ranges.append((low, high))
-    return np.array(ranges)
+    """Return how far the joints of a certificate may go, (joints, 2): infinitely far those without limits.
+
+    A joint that follows another one limits it, unless this would leave it no range.
+    """
+    ranges = np.tile([-np.inf, np.inf], (len(certificate.joints), 1))
+    order = sorted(range(len(frames.joints)), key=lambda k: frames.joints[k].leader != frames.joints[k].name)
+    for k in order:
+        joint, factor, column = frames.joints[k], float(frames.factor[k]), int(frames.column[k])
+        if joint.upper - joint.lower <= ENDLESS and factor != 0.0:
+            ends = (np.array([joint.lower, joint.upper]) - frames.offset[k]) / factor
+            low, high = max(ranges[column, 0], ends.min()), min(ranges[column, 1], ends.max())
+            if joint.leader == joint.name or high - low > LEAST:
+                ranges[column] = low, high
+    ranges += (-BEYOND, BEYOND)
+    for column, name in enumerate(certificate.joints):
+        low, high = inputs.scene.limits.get(name, (-np.inf, np.inf))
+        if high - low <= ENDLESS:
+            ranges[column] = max(ranges[column, 0], low - BEYOND), min(ranges[column, 1], high + BEYOND)
+    return np.asarray(ranges)
 
 
 def require_limits(ranges: Floats, certificate: Certificate) -> None:
