@@ -127,21 +127,59 @@ static int by_place(const void* a, const void* b) {
   return (part > other) - (part < other);
 }
 
-/* Number the corners: equal ones of a part are one point. */
+/* A number below `count`, a power of 2, that equal places have in common. */
+static size_t bucket_of(Vector at, size_t count) {
+  double numbers[3] = {at.x + 0.0, at.y + 0.0, at.z + 0.0}; /* of two zeros the one above */
+  uint64_t mixed = 0;
+  for (int i = 0; i < 3; ++i) {
+    uint64_t bits = 0;
+    memcpy(&bits, numbers + i, sizeof bits);
+    mixed = (mixed ^ bits) * 0x9e3779b97f4a7c15;
+    mixed ^= mixed >> 32;
+  }
+  return (size_t)mixed & (count - 1);
+}
+
+/* The corners in an order in which equal ones follow each other: those of a bucket are sorted, which is quick unless
+   nearly all are in one. */
+static Place* gathered(const Faces* faces) {
+  size_t count = 3 * faces->count, buckets = 1;
+  while (buckets < count) buckets *= 2;
+  Place* places = take(count, sizeof *places);
+  size_t *begin = take(buckets + 2, sizeof *begin), *bucket = take(count, sizeof *bucket);
+  for (size_t i = 0; i < count; ++i) {
+    bucket[i] = bucket_of(faces->corners[i], buckets);
+    ++begin[bucket[i] + 2];
+  }
+  for (size_t i = 2; i <= buckets; ++i) begin[i] += begin[i - 1];
+  for (size_t i = 0; i < count; ++i) places[begin[bucket[i] + 1]++] = (Place){faces->corners[i].x, i};
+  sorted_faces = faces;
+  for (size_t i = 0; i < buckets; ++i) {
+    if (begin[i + 1] - begin[i] > 1) qsort(places + begin[i], begin[i + 1] - begin[i], sizeof *places, by_place);
+  }
+  return places;
+}
+
+/* Number the corners as they come: equal ones of a part are one point. */
 static Mesh* numbered(const Faces* faces) {
   Mesh* mesh = take(1, sizeof *mesh);
   size_t count = 3 * faces->count;
-  Place* places = take(count, sizeof *places);
+  const Place* places = gathered(faces);
+  size_t *equal = take(count, sizeof *equal), *number = take(count, sizeof *number);
   mesh->triangle_count = faces->count;
   mesh->triangles = take(faces->count, sizeof *mesh->triangles);
   mesh->points = take(count, sizeof *mesh->points);
-  for (size_t i = 0; i < count; ++i) places[i] = (Place){faces->corners[i].x, i};
-  sorted_faces = faces;
-  qsort(places, count, sizeof *places, by_place);
   for (size_t i = 0; i < count; ++i) {
-    size_t corner = places[i].corner;
-    if (!i || by_place(places + i - 1, places + i)) mesh->points[mesh->point_count++] = faces->corners[corner];
-    mesh->triangles[corner / 3].corner[corner % 3] = mesh->point_count - 1;
+    bool same = i && !by_place(places + i - 1, places + i);
+    equal[places[i].corner] = same ? equal[places[i - 1].corner] : places[i].corner;
+  }
+  for (size_t i = 0; i < count; ++i) {
+    size_t* own = number + equal[i];
+    if (!*own) {
+      mesh->points[mesh->point_count] = faces->corners[i];
+      *own = ++mesh->point_count;
+    }
+    mesh->triangles[i / 3].corner[i % 3] = *own - 1;
   }
   return mesh;
 }
