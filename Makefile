@@ -117,7 +117,7 @@ $(VENV)-ros2/.types: pyproject.toml tests_peers/ros2/interfaces.py tests_peers/r
 
 # On the loopback of a network of its own, where the system allows one.
 test-ros2: $(VENV)-ros2/.types
-	PYTHONPATH=$(VENV)-ros2/types/python LD_LIBRARY_PATH=$(VENV)-ros2/types/lib \
+	PYTHONPATH=$(abspath $(VENV)-ros2/types/python) LD_LIBRARY_PATH=$(abspath $(VENV)-ros2/types/lib) \
 	unshare -rn sh -c 'ip link set lo up; exec $(VENV)-ros2/bin/python -m pytest -o addopts= tests/ros2 tests_peers/ros2'
 
 $(VENV)-robosuite/.done: pyproject.toml | $(VENV)/.native
@@ -158,4 +158,4 @@ release-check: wheels
 	$(BIN)/python tools/release_check.py
 
 clean:
-	rm -rf $(VENV) out build src/evenroad/_native/*.so
+	rm -rf $(VENV) $(VENV)-ros2 $(VENV)-robosuite out build src/evenroad/_native/*.so
