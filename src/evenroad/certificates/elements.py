@@ -12,8 +12,11 @@ from evenroad._native import certificates as native
 from evenroad._shared import once_property
 from evenroad.errors import NotAvailable
 from evenroad.geometry.mesh_file import load_mesh
-from evenroad.geometry.pose import Pose
+from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Shape, Sphere
+
+_CORNERS = np.stack(np.meshgrid(*[[-0.5, 0.5]] * 3, indexing="ij"), axis=-1).reshape(8, 3)
+"""The corners of a box whose sides are 1, in the order in which they are numbered."""
 
 
 @dataclass(frozen=True)
@@ -44,16 +47,14 @@ def elements_of(body: Shape, at: Pose, *, convex: bool = False, wider: float = 0
     With `convex` a mesh is one element, its hull; every element grows by `wider` [m].  Raises NotAvailable for a body
     that no certificate speaks of.
     """
-    pose = at @ body.pose
-    axis = pose.matrix[:3, 2]
-    x, y, z = axis.tolist()
+    pose = body.pose if at == IDENTITY else at @ body.pose
     if isinstance(body, Box):
-        signs = np.stack(np.meshgrid(*[[-0.5, 0.5]] * 3, indexing="ij"), axis=-1).reshape(8, 3)
-        return Elements(pose.apply(signs * body.size), np.arange(8).reshape(1, 8), wider, is_box=True)
+        return Elements(pose.apply(_CORNERS * body.size), np.arange(8).reshape(1, 8), wider, is_box=True)
     if isinstance(body, Sphere):
         return Elements(pose.apply(np.zeros((1, 3))), np.zeros((1, 1), np.int64), body.radius + wider)
     if isinstance(body, Cylinder):
         endpoints = 0.5 * body.length * np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
+        x, y, z = pose.rotation[2::3]
         return Elements(pose.apply(endpoints), np.arange(2).reshape(1, 2), wider, body.radius, (x, y, z))
     if isinstance(body, Capsule):
         return Elements(pose.apply(np.array([body.a, body.b])), np.arange(2).reshape(1, 2), body.radius + wider)

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._native.certificates import text_of_rows
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.geometry.mesh import TriangleMesh, convex_hull
 from evenroad.geometry.pose import Pose
@@ -117,7 +118,7 @@ def _entry(body: Shape, files: list[bytes]) -> str:
     body = along_z(body) if isinstance(body, Capsule) else body
     pose = f"xyz: {_list(map(_number, body.pose.xyz))}, xyzw: {_list(map(_number, body.pose.xyzw))}"
     if isinstance(body, PointCloud):
-        files.append("".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in body.points.tolist()).encode())
+        files.append(text_of_rows(np.ascontiguousarray(body.points, dtype=float), ""))
         return f"shape: cloud, file: {len(files)}.xyz, radius: {_number(body.radius)}, {pose}"
     if isinstance(body, Mesh):
         files.append(_mesh(body.triangles))
@@ -135,9 +136,8 @@ def _rows(body: Shape) -> list[Sequence[float]]:
 
 def _mesh(mesh: TriangleMesh) -> bytes:
     """Return the text of an OBJ."""
-    corners = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in np.asarray(mesh.vertices, dtype=float).tolist()]
-    faces = [f"f {a} {b} {c}\n" for a, b, c in (np.asarray(mesh.triangles, dtype=np.int64) + 1).tolist()]
-    return "".join([*corners, *faces]).encode()
+    corners = text_of_rows(np.ascontiguousarray(mesh.vertices, dtype=float), "v ")
+    return corners + text_of_rows(np.asarray(mesh.triangles, dtype=float) + 1.0, "f ")
 
 
 def _held(robot: Robot, name: str) -> HeldObject:

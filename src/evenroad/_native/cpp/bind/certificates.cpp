@@ -1,8 +1,10 @@
 // evenroad._native.certificates: writing a certificate.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string_view.h>
 
 #include "bind/arrays.hpp"
+#include "certificates/text.hpp"
 #include "certificates/writer.hpp"
 
 namespace evenroad::bind {
@@ -155,6 +157,14 @@ void add_certificates(nb::module_& module) {
       .def_ro("answers", &Answers::answers)
       .def_ro("directions", &Answers::directions)
       .def_ro("touch", &Answers::touch);
+  part.def(
+      "text_of_rows",
+      [](nb::handle rows, std::string_view before) {
+        const FloatRows values(rows, "rows");
+        const std::string text = text_of_rows(values.matrix(), before);
+        return nb::bytes(text.data(), text.size());
+      },
+      "rows"_a.none(), "before"_a);
   part.def("write_answers", &write_answers, "joint_tables"_a, "pairs"_a, "paths"_a, "most"_a);
 }
 

@@ -57,6 +57,7 @@ Motions::Motions(const Frames& frames, const Curves& curves, double tolerance)
         most = std::max(most, std::abs(frames.factor[k] * q + frames.offset[k]));
       }
     }
+    shift_.push_back(std::sqrt(squared_length(row_of(frames.shift, k))));
     slide_.push_back(frames.slides[k] != 0 ? most + std::abs(frames.factor[k]) * tolerance : 0.0);
   }
 }
@@ -68,6 +69,9 @@ const Motions::State& Motions::state(const Task& task) {
   if (const auto found = states_.find(key); found != states_.end()) return found->second;
   if (states_.size() >= MOST_STATES) states_.clear();
   State& state = states_[key];
+  const std::size_t count = frames_.count();
+  state.turn.reserve(count + 1), state.origin.reserve(count + 1);
+  state.turning.reserve(count), state.along.reserve(count), state.rate.reserve(count), state.bend.reserve(count);
   const double s = (2.0 * static_cast<double>(task.number) + 1.0) * task.half();
   const auto motion = static_cast<std::size_t>(task.motion);
   const auto first = curves_.at(motion, 0), middle = curves_.at(motion, 1), last = curves_.at(motion, 2);
@@ -93,7 +97,7 @@ const Motions::State& Motions::state(const Task& task) {
   return state;
 }
 
-Carried Motions::carried(const State& at, double half, std::int64_t frame, std::size_t shared, double reach) const {
+Carried Motions::carried(const State& at, double half, std::int64_t frame, std::size_t shared, double reach) {
   const auto& chain = chains_[static_cast<std::size_t>(frame)];
   Carried carried;
   carried.half = half;
@@ -101,17 +105,17 @@ Carried Motions::carried(const State& at, double half, std::int64_t frame, std::
   moving.turn = at.turn[static_cast<std::size_t>(frame)], moving.origin = at.origin[static_cast<std::size_t>(frame)];
   // From the last joint back: how far the node is from each one.
   double lever = reach;
-  std::vector<double> levers(chain.size());
+  levers_.resize(chain.size());
   for (std::size_t i = chain.size(); i-- > shared;) {
     lever += slide_[chain[i]];
-    levers[i] = lever;
-    lever += std::sqrt(squared_length(row_of(frames_.shift, chain[i])));
+    levers_[i] = lever;
+    lever += shift_[chain[i]];
   }
   for (std::size_t i = shared; i < chain.size(); i++) {
     const std::size_t k = chain[i];
     const bool slides = frames_.slides[k] != 0;
     const double fastest = std::abs(at.rate[k]) + half * at.bend[k], off = std::abs(frames_.factor[k]) * tolerance_;
-    const double turns = slides ? 0.0 : fastest, arm = slides ? 1.0 : levers[i];
+    const double turns = slides ? 0.0 : fastest, arm = slides ? 1.0 : levers_[i];
     carried.stray += arm * (fastest * (2.0 * carried.turning + turns) + at.bend[k]);
     carried.loose += arm * off;
     if (!slides) carried.turning += turns, carried.bending += at.bend[k], carried.twisted += off;

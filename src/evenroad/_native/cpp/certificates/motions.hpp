@@ -90,13 +90,14 @@ class Motions {
   };
 
   const State& state(const Task& task);
-  Carried carried(const State& at, double half, std::int64_t frame, std::size_t shared, double reach) const;
+  Carried carried(const State& at, double half, std::int64_t frame, std::size_t shared, double reach);
 
   Frames frames_;
   Curves curves_;
   double tolerance_;
   std::vector<std::vector<std::size_t>> chains_;  // joints above each frame, from the root
-  std::vector<double> slide_;                     // how far each joint slides at most
+  std::vector<double> slide_, shift_;             // how far each joint slides at most, and is from the one before
+  std::vector<double> levers_;                    // memory of one call
   std::unordered_map<std::uint64_t, State> states_;
 };
 

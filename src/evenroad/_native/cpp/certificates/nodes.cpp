@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "common/lanes.hpp"
+
 namespace evenroad::certificates {
 
 namespace {
@@ -18,7 +20,7 @@ Vector vector_at(const std::vector<double>& values, std::int64_t row) {
   return {values[at], values[at + 1], values[at + 2]};
 }
 
-/// Return the axis along which some places reach farthest, the first of several.
+/// Return the axis along which some points reach farthest, the first of several.
 int widest_axis(const std::vector<Vector>& points) {
   int widest = 0;
   double most = -1.0;
@@ -28,6 +30,56 @@ int widest_axis(const std::vector<Vector>& points) {
     if (high - low > most) most = high - low, widest = axis;
   }
   return widest;
+}
+
+using Eight = Lanes<double, 8>;
+
+/// Find the different corners of the elements of a part.
+void find_corners(Part& part) {
+  const Elements& shape = *part.shape;
+  const std::size_t each = shape.corners.size() / shape.count;
+  std::vector<std::int64_t> numbers;
+  numbers.reserve(part.rows.size() * each);
+  for (const std::int64_t row : part.rows) {
+    const auto from = shape.corners.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * each);
+    numbers.insert(numbers.end(), from, from + static_cast<std::ptrdiff_t>(each));
+  }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  part.count = numbers.size();
+  part.corners.resize(24 * ((numbers.size() + 7) / 8));
+  for (std::size_t i = 0; i < part.corners.size() / 3; i++) {
+    const Vector at = vector_at(shape.points, numbers[std::min(i, numbers.size() - 1)]);
+    for (std::size_t axis = 0; axis < 3; axis++) part.corners[i / 8 * 24 + 8 * axis + i % 8] = at[axis];
+  }
+}
+
+/// Return the number of the corner that is farthest along a functional, of which the first of several.
+std::size_t farthest_of(const Part& part, const Vector& along) {
+  constexpr double NONE = -std::numeric_limits<double>::infinity();
+  if (part.count <= 4) {
+    std::size_t best = 0;
+    double most = NONE;
+    for (std::size_t i = 0; i < part.count; i++) {
+      const double far = dot(part.corner(i), along);
+      if (far > most) most = far, best = i;
+    }
+    return best;
+  }
+  Eight most = all<Eight>(NONE);
+  Lanes<std::int64_t, 8> best{};
+  for (std::size_t from = 0; from < part.corners.size(); from += 24) {
+    const double* const at = part.corners.data() + from;
+    const Eight far = load<Eight>(at) * along[0] + load<Eight>(at + 8) * along[1] + load<Eight>(at + 16) * along[2];
+    const auto is_farther = far > most;
+    most = is_farther ? far : most;
+    best = is_farther ? all<Lanes<std::int64_t, 8>>(static_cast<std::int64_t>(from / 3)) : best;
+  }
+  std::size_t lane = 0;
+  for (std::size_t i = 1; i < 8; i++) {
+    if (most[i] > most[lane] || (most[i] == most[lane] && best[i] < best[lane])) lane = i;
+  }
+  return static_cast<std::size_t>(best[lane]) + lane;
 }
 
 std::vector<Part> whole(const std::vector<std::shared_ptr<const Elements>>& shapes) {
@@ -61,16 +113,11 @@ Node::Node(std::int64_t in_frame, std::vector<Part>&& parts) : frame(in_frame), 
   Vector low{FAR, FAR, FAR}, high{-FAR, -FAR, -FAR};
   for (Part& part : parts_) {
     const Elements& shape = *part.shape;
-    const std::size_t each = shape.corners.size() / shape.count;
-    for (const std::int64_t row : part.rows) {
-      const auto from = shape.corners.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * each);
-      part.points.insert(part.points.end(), from, from + static_cast<std::ptrdiff_t>(each));
-    }
-    std::sort(part.points.begin(), part.points.end());
-    part.points.erase(std::unique(part.points.begin(), part.points.end()), part.points.end());
-    elements += part.rows.size(), corners += part.points.size();
-    for (const std::int64_t point : part.points) {
-      const Vector at = vector_at(shape.points, point);
+    elements += part.rows.size();
+    find_corners(part);
+    corners += part.count;
+    for (std::size_t i = 0; i < part.count; i++) {
+      const Vector at = part.corner(i);
       reach = std::max(reach, std::sqrt(squared_length(at)) + shape.radius + shape.disc);
       for (int axis = 0; axis < 3; axis++) {
         const double aside = 1.0 - shape.axis[axis] * shape.axis[axis];
@@ -119,7 +166,8 @@ void Node::halve() const {
   std::vector<Part> sides[2];
   std::size_t element = 0;
   for (const Part& part : parts_) {
-    Part split[2] = {{part.shape, {}, {}}, {part.shape, {}, {}}};
+    Part split[2];
+    split[0].shape = split[1].shape = part.shape;
     for (const std::int64_t row : part.rows) split[is_first[element++] != 0 ? 0 : 1].rows.push_back(row);
     for (int each = 0; each < 2; each++) {
       if (!split[each].rows.empty()) sides[each].push_back(std::move(split[each]));
@@ -129,27 +177,32 @@ void Node::halve() const {
 }
 
 Vector Node::farthest(const Vector& along) const {
-  const double size = std::sqrt(squared_length(along));
-  double best = -std::numeric_limits<double>::infinity();
-  Vector found{};
+  double best = -std::numeric_limits<double>::infinity(), best_aside = 0.0, size = 0.0;
+  const Part* found = nullptr;
+  Vector here{}, across{};
   for (const Part& part : parts_) {
     const Elements& shape = *part.shape;
-    double far = -std::numeric_limits<double>::infinity();
-    Vector here{};
-    for (const std::int64_t point : part.points) {
-      const Vector at = vector_at(shape.points, point);
-      const double reached = dot(at, along);
-      if (reached > far) far = reached, here = at;
+    const Vector at = part.corner(farthest_of(part, along));
+    double far = dot(at, along), aside = 0.0;
+    Vector beside{};
+    if (shape.radius > 0.0) {
+      if (size == 0.0) size = std::sqrt(squared_length(along));
+      far += shape.radius * size;
     }
-    const Vector across = along - shape.axis * dot(along, shape.axis);
-    const double aside = std::sqrt(squared_length(across));
-    far += shape.radius * size + shape.disc * aside;
-    if (!(far > best)) continue;
-    best = far;
-    found = here + along * (shape.radius / size);
-    if (shape.disc > 0.0 && aside > 1e-12 * size) found = found + across * (shape.disc / aside);
+    if (shape.disc > 0.0) {
+      beside = along - shape.axis * dot(along, shape.axis);
+      aside = std::sqrt(squared_length(beside));
+      far += shape.disc * aside;
+    }
+    if (far > best) best = far, best_aside = aside, found = &part, here = at, across = beside;
   }
-  return found;
+  if (found == nullptr) return here;
+  const Elements& shape = *found->shape;
+  if (shape.radius > 0.0) here = here + along * (shape.radius / size);
+  if (shape.disc > 0.0 && squared_length(across) > 1e-24 * squared_length(along)) {
+    here = here + across * (shape.disc / best_aside);
+  }
+  return here;
 }
 
 double Node::box_reach(const Vector& along) const {

@@ -26,7 +26,13 @@ struct Elements {
 struct Part {
   std::shared_ptr<const Elements> shape;
   std::vector<std::int64_t> rows;
-  std::vector<std::int64_t> points;  // that the elements have for corners
+  std::vector<double> corners;  // of these, each once: eight x, eight y, eight z, and so on; the last one is repeated
+  std::size_t count = 0;        // of corners
+
+  Vector corner(std::size_t i) const {
+    const double* const at = corners.data() + i / 8 * 24 + i % 8;
+    return {at[0], at[8], at[16]};
+  }
 };
 
 /// Elements of one frame, and the box around them.

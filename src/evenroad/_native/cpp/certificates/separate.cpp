@@ -50,7 +50,7 @@ bool has(const robot::Simplex& simplex, const Vector& point) {
 
 }  // namespace
 
-Separation separate(const Moved& moved, const Vector& first, By by, When when, double enough) {
+Separation separate(const Moved& moved, const Vector& first, By by, When when, const Wanted& wanted) {
   constexpr double FAR = std::numeric_limits<double>::infinity();
   Separation best{{1.0, 0.0, 0.0}, -FAR, FAR};
   robot::Simplex simplex;
@@ -62,12 +62,12 @@ Separation separate(const Moved& moved, const Vector& first, By by, When when, d
     const Vector unit = v * (1.0 / size), point = least_along(moved, unit, by, when);
     const double gap = dot(point, unit);
     if (gap > best.gap) best.direction = unit, best.gap = gap;
-    if (best.gap > enough || simplex.size == 4 || has(simplex, point)) break;
-    if (simplex.size > 0 && size - gap < 1e-10 + 1e-7 * size) break;
+    if (best.gap > wanted.enough || simplex.size == 4 || has(simplex, point)) break;
+    if (simplex.size > 0 && size - gap < 1e-10 + wanted.error * size) break;
     simplex.corners[simplex.size++] = point;
     robot::nearest(simplex, v);
     best.most = simplex.size == 0 ? 0.0 : std::min(best.most, std::sqrt(squared_length(v)));
-    if (simplex.size == 0) break;
+    if (best.most < wanted.least) break;
   }
   return best;
 }

@@ -13,8 +13,13 @@ struct Separation {
 
 enum class When { BOTH, MIDDLE };
 
-/// Search the direction from a first one, until the gap is `enough`: by GJK between the second set less the first one,
-/// which is the hull of what both nodes are at the ends of the stretch.
-Separation separate(const Moved& moved, const Vector& first, By by, When when, double enough);
+/// When a search may end: with a gap of `enough`, where none of `least` is possible, or with a relative error.
+struct Wanted {
+  double enough = 0.0, least = 0.0, error = 0.0;
+};
+
+/// Search the direction from a first one: by GJK between the second set less the first one, which is the hull of what
+/// both nodes are at the ends of the stretch.
+Separation separate(const Moved& moved, const Vector& first, By by, When when, const Wanted& wanted);
 
 }  // namespace evenroad::certificates

@@ -15,10 +15,11 @@ namespace {
 
 enum Answer : std::uint8_t { HALVE_TIME, HALVE_FIRST, HALVE_SECOND, BY_CENTRES, BY_BOXES, BY_CORNERS };
 
-constexpr double LEAST = 1e-9;     // what a checker demands of a gap [m]
-constexpr double SPARE = 2e-9;     // what a gap has over [m]
-constexpr double AMPLE = 1e-6;     // with so much over, no better direction is searched [m]
-constexpr double TOUCHING = 1e-7;  // nearer single elements touch [m]
+constexpr double LEAST = 1e-9;                // what a checker demands of a gap [m]
+constexpr double SPARE = 2e-9;                // what a gap has over [m]
+constexpr double AMPLE = 1e-6;                // with so much over, no better direction is searched [m]
+constexpr double TOUCHING = 1e-7;             // nearer single elements touch [m]
+constexpr double EXACT = 1e-7, ROUGH = 0.02;  // relative errors of distances
 constexpr std::int64_t DEEPEST = 26;
 constexpr std::size_t MANY = 2000;  // with more corners, a node is halved before these are looked at
 
@@ -30,7 +31,7 @@ double size_of(const Node& node) {
 
 class Writer {
  public:
-  Writer(Motions& motions, std::span<const Pair> pairs) : motions_(motions), pairs_(pairs) {}
+  Writer(Motions& motions, std::span<const Pair> pairs) : motions_(motions), pairs_(pairs), last_(pairs.size()) {}
 
   Written written;
 
@@ -45,14 +46,26 @@ class Writer {
     const Node &first = *task.first, &second = *task.second;
     const bool many = std::max(first.corners, second.corners) > MANY;
     const By by = many ? By::BOXES : By::CORNERS;
-    const Separation best = separate(moved, between, by, When::BOTH, enough + strayed + AMPLE);
-    if (best.gap > 0.0) {
+    // What separated the pair last often does again.
+    Vector& last = last_[static_cast<std::size_t>(task.pair)];
+    const bool is_guessed = squared_length(last) > 0.0;
+    if (is_guessed) {
+      if (const auto answer = by_direction(moved, last, enough, by)) return *answer;
+    }
+    // No direction separates sets of which two points are nearer than what is needed.
+    const Wanted wanted{enough + strayed + AMPLE, enough + strayed, EXACT};
+    const Separation best = separate(moved, is_guessed ? last : between, by, When::BOTH, wanted);
+    if (best.gap > 0.0 && !(best.most < wanted.least)) {
+      last = best.direction;
       if (const auto answer = by_direction(moved, best.direction, enough, by)) return *answer;
     }
     if (many) return first.corners > MANY ? HALVE_FIRST : HALVE_SECOND;
-    const Separation at_middle = separate(moved, between, by, When::MIDDLE, 1e9);
-    const double still = at_middle.gap - keep - moved.loose, travel = at_middle.gap - best.gap;
     const bool both = first.elements == 1 && second.elements == 1;
+    // Of single elements only matters whether they touch.
+    const Wanted room = both ? Wanted{keep + moved.loose + 2.0 * TOUCHING, 0.0, EXACT} : Wanted{1e9, 0.0, ROUGH};
+    const Separation at_middle = separate(moved, best.direction, by, When::MIDDLE, room);
+    const double still = at_middle.gap - keep - moved.loose;
+    const double travel = at_middle.gap - std::min(best.most, at_middle.gap);
     const Answer halve = first.elements == 1                ? HALVE_SECOND
                          : second.elements == 1             ? HALVE_FIRST
                          : size_of(first) < size_of(second) ? HALVE_SECOND
@@ -106,7 +119,8 @@ class Writer {
 
   Motions& motions_;
   std::span<const Pair> pairs_;
-  double touched_ = -1.0;  // where on the path, in motions
+  std::vector<Vector> last_;  // directions along which each pair was separated last
+  double touched_ = -1.0;     // where on the path, in motions
 };
 
 }  // namespace
