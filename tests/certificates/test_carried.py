@@ -124,6 +124,7 @@ ROBOTS = {
     ),
     "planar.urdf": URDF.replace("<link", PLANAR.format("planar") + "<link", 1),
     "floating.urdf": URDF.replace("<link", PLANAR.format("floating") + "<link", 1),
+    "prefix.urdf": URDF.replace("</robot>", "<drake:joint/></robot>"),
     "capsule.urdf": URDF.replace('<sphere radius="0.1"/>', '<capsule radius="0.1" length="0.05"/>'),
 }
 

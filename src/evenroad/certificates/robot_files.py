@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from evenroad.certificates.claim import Claimed, Links, neighbours, tree_of
@@ -79,9 +80,19 @@ class ReadRobot:
             sources.robot.suffix == ".urdf"
             and not (sources.use_visuals or sources.upright_meshes)
             and not _ODD_XML.search(self.data)
+            and _is_xml(self.data)
             and not coordinates & named
             and all(isinstance(each, Path) and each.suffix.lower() in MESHES for each in self.meshes)
         )
+
+
+def _is_xml(data: bytes) -> bool:
+    """Return whether a file is XML for any reader: evenroad also takes names with a prefix that is not declared."""
+    try:
+        ET.fromstring(data)
+    except ET.ParseError:
+        return False
+    return True
 
 
 _read: Remembered[ReadRobot] = Remembered(16)
