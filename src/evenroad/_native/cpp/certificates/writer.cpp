@@ -62,8 +62,8 @@ class Writer {
     if (many) return first.corners > MANY ? HALVE_FIRST : HALVE_SECOND;
     const bool both = first.elements == 1 && second.elements == 1;
     // Of single elements only matters whether they touch.
-    const Wanted room = both ? Wanted{keep + moved.loose + 2.0 * TOUCHING, 0.0, EXACT} : Wanted{1e9, 0.0, ROUGH};
-    const Separation at_middle = separate(moved, best.direction, by, When::MIDDLE, room);
+    const Wanted needed = both ? Wanted{keep + moved.loose + 2.0 * TOUCHING, 0.0, EXACT} : Wanted{1e9, 0.0, ROUGH};
+    const Separation at_middle = separate(moved, best.direction, by, When::MIDDLE, needed);
     const double still = at_middle.gap - keep - moved.loose;
     const double travel = at_middle.gap - std::min(best.most, at_middle.gap);
     const Answer halve = first.elements == 1                ? HALVE_SECOND
