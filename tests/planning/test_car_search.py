@@ -8,6 +8,7 @@ import pytest
 import evenroad as er
 from evenroad.errors import InvalidValue
 from evenroad.planning import CarSearch
+from evenroad.planning.planners.car import SHORTCUTS
 from tests.driving.oracle import BOX, Oracle, driven
 
 ELBOW = [(-0.4, -0.2), (0.5, -0.2), (0.5, 0.2), (0.0, 0.2), (0.0, 0.5), (-0.4, 0.5)]
@@ -93,6 +94,13 @@ def test_shortcuts_make_paths_shorter():
         totals += [raw.cost, quick.cost, full.cost]
         assert full.milestone_cost == pytest.approx(raw.cost)
     assert totals[0] > totals[1] >= totals[2]
+
+
+def test_shortcuts_are_not_tried_where_the_path_is_the_shortest_curve_and_end_where_they_gain_nothing():
+    world = rooms().world(**CARS["reverses"])
+    assert er.plan(world, (2, 2, 0), (3, 2, 0)).counts["shortcut_motions"] == 0
+    tries = [er.plan(world, start, goal).counts["shortcut_motions"] for start, goal in queries(world, 4, 9)]
+    assert 0 < sum(tries) < 4 * SHORTCUTS
 
 
 def test_where_cusps_cost_more_there_are_fewer():

@@ -67,6 +67,7 @@ class CarQuery:
     nodes: int
     poses: int
     motions: int
+    shortcuts: int
 
     def __init__(self, vehicle: Vehicle, steering: Steering, start: Floats, goal: Floats, variant: int) -> None: ...
     def search(self, rounds: int) -> bool: ...

@@ -33,11 +33,13 @@ def solution(
     raw_cost: float | None = None,
     message: str = "",
     proof: str = "",
+    is_led: bool = False,
     **more: object,
 ) -> PlanResult:
     """Return the result with a path to one of the goals, and with the `raw` path before smoothing.
 
-    Costs are lengths by default; the message says which they are.
+    Costs are lengths by default; the message says which they are.  `is_led`: the paths lead there already, as `led`
+    would have them do.
     """
     world = problem.world
     cost = path_length(path, world.space) if cost is None else cost
@@ -58,10 +60,11 @@ def solution(
             "milestone_cost": raw_cost,
             **more,
         },
+        is_led=is_led,
     )
 
 
-def _made(problem: Problem, attributes: dict[str, object]) -> PlanResult:
+def _made(problem: Problem, attributes: dict[str, object], *, is_led: bool = False) -> PlanResult:
     # Set at once. A frozen class sets one field after the other, which takes twice as long.
     result = object.__new__(PlanResult)
     world = problem.world
@@ -69,7 +72,7 @@ def _made(problem: Problem, attributes: dict[str, object]) -> PlanResult:
     given = problem.given
     poses = () if given is None else tuple(goal for goal, _ in given.poses)
     vars(result).update(attributes, world=world, poses=poses)
-    return led(world, result)
+    return result if is_led else led(world, result)
 
 
 def unreached(problem: Problem) -> PlanResult | None:

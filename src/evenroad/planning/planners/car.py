@@ -24,10 +24,11 @@ from evenroad.planning.make_result import path_message, solution
 from evenroad.planning.problem import Problem
 from evenroad.planning.refusal import refusal
 from evenroad.planning.result import PlanResult, Status
+from evenroad.planning.terminals import turns_at_end
 from evenroad.roadmap.budget import BEFORE_REASONS
 
 SHORTCUTS, QUICK_SHORTCUTS = 200, 60
-"""Numbers of shortcuts that are tried, and of those that are with ``smooth="quick"``."""
+"""Largest numbers of shortcuts that are tried, and of those that are with ``smooth="quick"``."""
 _BEFORE_PROOFS = (1, True), (4, False)
 """Numbers of rounds of the search before a proof that there is no path, and whether that is a quick one."""
 _SAME = 1e-7
@@ -102,9 +103,12 @@ class CarSearch:
             return refused
         cusp = (space.turning_radius or space.spot) if self.cusp_cost is None else float(self.cusp_cost)
         steering = Steering(space.turning_radius, space.spot, space.reverse, cusp)
-        variant, lengths = variant_of(problem.rng), space.distance(*_pairs(problem.start, attempt.free_goals))
-        queries = [CarQuery(world.vehicle, steering, problem.start, goal, variant) for goal in attempt.free_goals]
-        order = np.argsort(lengths, kind="stable").tolist()
+        variant, goals = variant_of(problem.rng), attempt.free_goals
+        queries = [CarQuery(world.vehicle, steering, problem.start, goal, variant) for goal in goals]
+        order = [0]
+        if len(goals) > 1:
+            lengths = space.distance(np.broadcast_to(problem.start, goals.shape), goals)
+            order = np.argsort(lengths, kind="stable").tolist()
         found = _searched(attempt, queries, order)
         return found if isinstance(found, PlanResult) else _result(attempt, queries, found, space)
 
@@ -140,23 +144,25 @@ def _result(attempt: Attempt, queries: Sequence[CarQuery], number: int, space: C
     goal = int(attempt.goals[number])
     with attempt.watch("shortcut"), until(attempt.time):
         rows, raw = query.path(tries)
-    length = float(np.abs(rows[:, 1]).sum())
-    path = _sampled(problem, space, rows, goal, world.grid.resolution)
-    pieces = as_pieces(rows, space)
-    counts = _counts(queries)
-    counts["shortcut_motions"] = tries
-    turns = cusps_of(pieces)
+    path = milestones = _sampled(problem, space, rows, goal, world.grid.resolution)
+    length = raw_length = _length(rows)
+    if raw is not rows:
+        milestones, raw_length = _sampled(problem, space, raw, goal, world.grid.resolution), _length(raw)
+    pieces, counts = as_pieces(rows, space), _counts(queries)
+    counts["shortcut_motions"] = query.shortcuts
+    said = f"{path_message(path, length, goal, len(problem.goals))}, {len(pieces)} pieces and {cusps_of(pieces)} cusps"
     return solution(
         problem,
         path,
         goal,
-        raw=_sampled(problem, space, raw, goal, world.grid.resolution),
+        raw=milestones,
         cost=length,
-        raw_cost=float(np.abs(raw[:, 1]).sum()),
-        message=f"{path_message(path, length, goal, len(problem.goals))}, {len(pieces)} pieces and {turns} cusps",
+        raw_cost=raw_length,
+        message=said + turns_at_end(world, path, problem.goals[goal]),
         planner=attempt.planner,
         counts=counts,
-        timings=dict(attempt.watch.seconds),
+        timings=attempt.watch.seconds,
+        is_led=True,
         pieces=pieces,
     )
 
@@ -166,15 +172,20 @@ def _sampled(problem: Problem, space: CarSpace, rows: Floats, goal: int, step: f
     path = space.steering.poses_along(problem.start, rows, step)
     if len(path) == 1:
         path = np.vstack([path, path])
-    wanted = problem.goals[goal]
-    turns = np.round((path[-1, 2] - wanted[2]) / (2.0 * math.pi))
-    last = wanted + np.array([0.0, 0.0, 2.0 * math.pi * turns])
-    if np.abs(path[-1] - last).max() > _SAME * max(1.0, float(np.abs(wanted).max())):
+    x, y, angle = problem.goals[goal].tolist()
+    end = path[-1].tolist()
+    wanted = x, y, angle + 2.0 * math.pi * round((end[2] - angle) / (2.0 * math.pi))
+    if math.dist(end, wanted) > _SAME * max(1.0, abs(x), abs(y), abs(angle)):
         raise AssertionError(
             "the path of a car does not end at its goal: this is a fault of evenroad's, please report it"
         )
-    path[-1] = last
+    path[-1] = wanted
+    path.setflags(write=False)
     return path
+
+
+def _length(rows: Floats) -> float:
+    return float(np.abs(rows[:, 1]).sum())
 
 
 def _counts(queries: Sequence[CarQuery]) -> dict[str, int]:
@@ -185,14 +196,10 @@ def _counts(queries: Sequence[CarQuery]) -> dict[str, int]:
     }
 
 
-def _pairs(start: Floats, goals: Floats) -> tuple[Floats, Floats]:
-    return np.broadcast_to(start, goals.shape), goals
-
-
 def _require_radians(terminals: Floats) -> None:
-    for name, pose in zip(("start", *("goal",) * (len(terminals) - 1)), terminals, strict=True):
-        if abs(pose[2]) > LARGEST_ANGLE:
+    for row, angle in enumerate(terminals[:, 2].tolist()):
+        if abs(angle) > LARGEST_ANGLE:
             raise InvalidValue(
-                f"the angle of the {name} must be at most 4 pi in radians, got {pose[2]:g}; are these degrees?"
-                f" math.radians({pose[2]:g}) is {math.radians(pose[2]):.6g}"
+                f"the angle of the {'goal' if row else 'start'} must be at most 4 pi in radians, got {angle:g};"
+                f" are these degrees? math.radians({angle:g}) is {math.radians(angle):.6g}"
             )

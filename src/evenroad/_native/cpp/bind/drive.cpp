@@ -383,7 +383,8 @@ nb::object as_map_rows(const drive::CarQuery& query, std::span<const drive::Piec
 nb::tuple car_path(drive::CarQuery& query, std::int64_t shortcuts) {
   require_budget(shortcuts, "shortcuts");
   const drive::CarPath path = without_gil([&] { return query.path(shortcuts); });
-  return nb::make_tuple(as_map_rows(query, path.pieces), as_map_rows(query, path.raw));
+  const nb::object pieces = as_map_rows(query, path.pieces);
+  return nb::make_tuple(pieces, path.raw == path.pieces ? pieces : as_map_rows(query, path.raw));
 }
 
 }  // namespace
@@ -434,6 +435,7 @@ void add_drive(nb::module_& module) {
       .def("search", &search, "rounds"_a)
       .def("path", &car_path, "shortcuts"_a)
       .def_prop_ro("nodes", &drive::CarQuery::nodes)
+      .def_prop_ro("shortcuts", &drive::CarQuery::shortcuts)
       .def_prop_ro("poses", [](const drive::CarQuery& query) { return query.counts().poses; })
       .def_prop_ro("motions", [](const drive::CarQuery& query) { return query.counts().motions; });
 }

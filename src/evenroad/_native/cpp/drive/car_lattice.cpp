@@ -12,8 +12,6 @@ namespace {
 /// Side of a cell of poses, as a share of the footprint's reach, and number of slices of the angle.
 constexpr double CELL = 0.25;
 constexpr int ANGLES = 72;
-/// A disk walks over cells to its eight neighbours: 8 % longer than straight at most.
-constexpr double STRAIGHTER = 0.92;
 /// Number of words that are tried from a pose.
 constexpr std::size_t JOINED = 3;
 /// A curve is tried after as many poses as a word is long, in these many steps.
@@ -21,72 +19,16 @@ constexpr double STEPS_A_JOIN = 8.0;
 
 }  // namespace
 
-DiskLengths::DiskLengths(const Vehicle& vehicle, const Pose& goal)
-    : centre_(vehicle.footprint().inner.centres[0]),
-      stride_(std::max<std::int64_t>(1, static_cast<std::int64_t>(0.5 * vehicle.footprint().inner.radius))),
-      rows_(vehicle.rows() / stride_ + 1),
-      columns_(vehicle.columns() / stride_ + 1),
-      lengths_(rows_ * columns_, std::numeric_limits<float>::infinity()) {
-  struct Waiting {
-    float length;
-    std::int64_t cell;
-    bool operator>(const Waiting& other) const { return length > other.length; }
-  };
-  const world::Disk& disk = vehicle.inner();
-  // A cell of the walk is open where the disk is not blocked all over one of the map's cells in it.
-  const auto is_open = [&](std::int64_t row, std::int64_t column) {
-    const std::int64_t last_row = std::min((row + 1) * stride_, vehicle.rows());
-    const std::int64_t last_column = std::min((column + 1) * stride_, vehicle.columns());
-    for (std::int64_t r = row * stride_; r < last_row; r++) {
-      for (std::int64_t c = column * stride_; c < last_column; c++) {
-        if (disk.cell(r, c) != world::BLOCKED) return true;
-      }
-    }
-    return false;
-  };
-  std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue;
-  const auto first = static_cast<std::int64_t>(cell_of(Placed(goal)(centre_)));
-  lengths_[first] = 0.0F, queue.push({0.0F, first});
-  ClockWatch clock(1024);
-  while (!queue.empty()) {
-    const auto [length, cell] = queue.top();
-    queue.pop();
-    clock.look();
-    if (length > lengths_[cell]) continue;
-    for (std::int64_t row = std::max<std::int64_t>(cell / columns_ - 1, 0);
-         row <= std::min(cell / columns_ + 1, rows_ - 1); row++) {
-      for (std::int64_t column = std::max<std::int64_t>(cell % columns_ - 1, 0);
-           column <= std::min(cell % columns_ + 1, columns_ - 1); column++) {
-        const bool is_diagonal = row != cell / columns_ && column != cell % columns_;
-        const float through = length + static_cast<float>(stride_) * (is_diagonal ? 1.41421356F : 1.0F);
-        const std::int64_t next = row * columns_ + column;
-        if (through >= lengths_[next] || !is_open(row, column)) continue;
-        lengths_[next] = through, queue.push({through, next});
-      }
-    }
-  }
-}
-
-double DiskLengths::from(const Pose& pose) const {
-  const double walked = lengths_[cell_of(Placed(pose)(centre_))];
-  return std::max(STRAIGHTER * walked - 3.0 * static_cast<double>(stride_), 0.0);
-}
-
-std::size_t DiskLengths::cell_of(Vec at) const {
-  const auto row = std::clamp<std::int64_t>(static_cast<std::int64_t>(at.y) / stride_, 0, rows_ - 1);
-  const auto column = std::clamp<std::int64_t>(static_cast<std::int64_t>(at.x) / stride_, 0, columns_ - 1);
-  return static_cast<std::size_t>(row * columns_ + column);
-}
-
-CarLattice::CarLattice(Checks& checks, const Steering& steering, const Pose& from, const Pose& to, bool is_backwards)
+CarLattice::CarLattice(Checks& checks, DiskWays& ways, const Steering& steering, const Pose& from, const Pose& to,
+                       bool is_backwards)
     : checks_(checks),
+      ways_(ways),
       steering_(steering),
       from_(from),
       to_(to),
       is_backwards_(is_backwards),
       cell_(CELL * checks.vehicle().footprint().reach),
-      step_(std::max(1.5 * cell_, steering.per_radian() * 2.02 * PI / ANGLES)),
-      lengths_(checks.vehicle(), to) {
+      step_(std::max(1.5 * cell_, steering.per_radian() * 2.02 * PI / ANGLES)) {
   nodes_.push_back({from, -1, {}, 0.0});
   at_[cell_of(from)] = 0;
   waiting_.push({estimate(from), 0});
@@ -108,8 +50,8 @@ bool CarLattice::expand(int poses) {
   return false;
 }
 
-double CarLattice::estimate(const Pose& pose) const {
-  return std::max(lengths_.from(pose), Words(steering_, pose, to_, is_backwards_).best().length);
+double CarLattice::estimate(const Pose& pose) {
+  return std::max(ways_.length_from(pose), Words(steering_, pose, to_, is_backwards_).best().length);
 }
 
 std::uint64_t CarLattice::cell_of(const Pose& pose) const {

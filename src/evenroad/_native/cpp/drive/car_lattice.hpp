@@ -1,8 +1,8 @@
 // A lattice search for cars: A* over small cells of poses, by arcs of the least radius and straight drives.
 //
 // After Hybrid A* (D. Dolgov and others, 2008).  What is left to the goal is estimated by the larger of the shortest
-// curve without obstacles and the shortest path of the disk inside of the footprint.  From every few poses a curve to
-// the goal is tried.
+// curve without obstacles and the way of the disk inside of the footprint.  From every few poses a curve to the goal is
+// tried.
 #pragma once
 
 #include <cstdint>
@@ -10,29 +10,17 @@
 #include <unordered_map>
 #include <vector>
 
+#include "drive/disk_ways.hpp"
 #include "drive/words.hpp"
 
 namespace evenroad::drive {
 
-/// The least lengths of paths of a disk to a goal, on every few cells; infinite where there is none.
-class DiskLengths {
- public:
-  DiskLengths(const Vehicle& vehicle, const Pose& goal);
-  /// Return a length that the disk needs from a pose, or less.
-  double from(const Pose& pose) const;
-
- private:
-  std::size_t cell_of(Vec at) const;
-
-  Vec centre_;
-  std::int64_t stride_, rows_, columns_;
-  std::vector<float> lengths_;
-};
-
 class CarLattice {
  public:
   /// Search from one free pose to another; backwards along the path where the first is the goal of the query.
-  CarLattice(Checks& checks, const Steering& steering, const Pose& from, const Pose& to, bool is_backwards);
+  /// The ways lead to that one.
+  CarLattice(Checks& checks, DiskWays& ways, const Steering& steering, const Pose& from, const Pose& to,
+             bool is_backwards);
 
   /// Expand that many poses; return whether there is a path.
   bool expand(int poses);
@@ -57,17 +45,17 @@ class CarLattice {
     }
   };
 
-  double estimate(const Pose& pose) const;
+  double estimate(const Pose& pose);
   std::uint64_t cell_of(const Pose& pose) const;
   void add(int parent, const Piece& piece);
   bool join(int node);
 
   Checks& checks_;
+  DiskWays& ways_;
   Steering steering_;
   Pose from_, to_;
   bool is_backwards_;
   double cell_, step_;
-  DiskLengths lengths_;
   std::vector<Node> nodes_;
   std::unordered_map<std::uint64_t, int> at_;
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> waiting_;

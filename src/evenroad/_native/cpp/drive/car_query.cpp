@@ -31,7 +31,8 @@ CarQuery::CarQuery(const Vehicle& vehicle, const Steering& steering, const Pose&
       steering_(steering),
       start_(start),
       goal_(goal),
-      trees_(checks_, steering_, start, goal, variant) {}
+      to_goal_(vehicle, start, goal),
+      trees_(checks_, to_goal_, steering_, start, goal, variant) {}
 
 bool CarQuery::search(std::int64_t rounds) {
   for (; found_.empty() && rounds > 0; rounds--, round_++) {
@@ -46,21 +47,24 @@ bool CarQuery::search_once() {
     return true;
   }
   if (round_ == 0) return false;
-  if (!forwards_) forwards_.emplace(checks_, steering_, start_, goal_, false);
+  if (!forwards_) forwards_.emplace(checks_, to_goal_, steering_, start_, goal_, false);
   if (forwards_->expand(EXPANDED)) {
     found_ = forwards_->path();
     return true;
   }
   if (steering_.is_reversing) return false;
-  if (!backwards_) backwards_.emplace(checks_, steering_, goal_, start_, true);
+  if (!backwards_) {
+    to_start_.emplace(vehicle(), goal_, start_);
+    backwards_.emplace(checks_, *to_start_, steering_, goal_, start_, true);
+  }
   if (!backwards_->expand(EXPANDED)) return false;
   found_ = backwards_->path();
   return true;
 }
 
 CarPath CarQuery::path(std::int64_t shortcuts) {
-  CarPath path{found_, found_, 0};
-  path.shortcuts = shorten(checks_, steering_, start_, path.pieces, shortcuts);
+  CarPath path{found_, found_};
+  shortcuts_ = shorten(checks_, steering_, start_, path.pieces, shortcuts);
   const OffTheClock proving;
   // Rounding gathers along a path: what is handed out is proved once more, as it is.
   if (are_free(checks_, steering_, start_, path.pieces)) return path;

@@ -13,7 +13,6 @@ namespace evenroad::drive {
 /// Pieces from the start to the goal, before and after shortcuts, in cells.
 struct CarPath {
   std::vector<Piece> raw, pieces;
-  std::int64_t shortcuts = 0;
 };
 
 class CarQuery {
@@ -34,6 +33,8 @@ class CarQuery {
   const Steering& steering() const { return steering_; }
   const Counts& counts() const { return checks_.counts; }
   std::int64_t nodes() const;
+  /// Number of shortcuts that were tried.
+  std::int64_t shortcuts() const { return shortcuts_; }
 
  private:
   bool search_once();
@@ -41,10 +42,12 @@ class CarQuery {
   Checks checks_;
   Steering steering_;
   Pose start_, goal_;
+  DiskWays to_goal_;
   CarTrees trees_;
+  std::optional<DiskWays> to_start_;
   /// From the start, and from the goal of a car that drives only forwards; they begin with the second round.
   std::optional<CarLattice> forwards_, backwards_;
-  std::int64_t round_ = 0;
+  std::int64_t round_ = 0, shortcuts_ = 0;
   std::vector<Piece> found_;
 };
 

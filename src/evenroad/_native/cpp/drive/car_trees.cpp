@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "drive/route.hpp"
-
 namespace evenroad::drive {
 
 namespace {
@@ -37,8 +35,10 @@ double EvenPoints::operator[](int axis) const {
   return value - std::floor(value);
 }
 
-CarTrees::CarTrees(Checks& checks, const Steering& steering, const Pose& start, const Pose& goal, std::uint64_t variant)
+CarTrees::CarTrees(Checks& checks, DiskWays& ways, const Steering& steering, const Pose& start, const Pose& goal,
+                   std::uint64_t variant)
     : checks_(checks),
+      ways_(ways),
       steering_(steering),
       roots_{start, goal},
       chunk_(std::max(steering.per_radian(), 0.5 * checks.vehicle().footprint().reach)),
@@ -51,7 +51,7 @@ bool CarTrees::grow(int turns) {
   if (turns_ == 0 && join_straight()) return true;
   for (; turns > 0; turns--, turns_++) {
     look_at_clock();
-    if (turns_ == BEFORE_ROUTE) route_ = disk_route(checks_.vehicle(), roots_[0], roots_[1]);
+    if (turns_ == BEFORE_ROUTE) route_ = ways_.route_from(roots_[0]);
     if (turns_ % 3 == 2 && trees_[growing_].next < trees_[growing_].waiting.size()) {
       if (move_to_contact(growing_)) return true;
       growing_ = 1 - growing_;
@@ -153,7 +153,11 @@ CarTrees::Nearest CarTrees::nearest(int tree, const Pose& pose) const {
   Nearest found;
   found.word.cost = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < count; k++) {
-    const Word word = Words(steering_, nodes[best[k].node].pose, pose, tree == 1).best();
+    const Pose& from = nodes[best[k].node].pose;
+    // No word is shorter than the way to there, and than the turn.
+    const double turn = steering_.per_radian() * std::abs(wrapped(pose.angle - from.angle));
+    if (std::max(norm({pose.x - from.x, pose.y - from.y}), turn) >= found.word.cost) continue;
+    const Word word = Words(steering_, from, pose, tree == 1).best();
     if (word.cost < found.word.cost) found = {best[k].node, word};
   }
   return found;

@@ -55,7 +55,7 @@ bool Checks::is_free(const Pose& pose) {
   const Placed placed(pose);
   const Footprint& footprint = vehicle_.footprint();
   const auto state = [&](const world::Disk& disk, Vec at) {
-    return disk.cell(static_cast<std::int64_t>(at.y), static_cast<std::int64_t>(at.x));
+    return disk.cell_if_known(static_cast<std::int64_t>(at.y), static_cast<std::int64_t>(at.x));
   };
   for (const Vec& centre : footprint.inner.centres) {
     const Vec at = placed(centre);
@@ -108,7 +108,7 @@ bool Checks::is_covered_free(const Motion& motion, const Interval& interval, con
     const Vec at = middle(centre);
     if (!vehicle_.has(at)) return false;
     const double moved = motion.is_about ? norm(at - motion.centre) * swing : along + norm(centre) * swing;
-    const std::uint8_t state = disk.cell(static_cast<std::int64_t>(at.y), static_cast<std::int64_t>(at.x));
+    const std::uint8_t state = disk.cell_if_known(static_cast<std::int64_t>(at.y), static_cast<std::int64_t>(at.x));
     return state >= world::FREE && static_cast<double>(state - world::FREE) >= moved * (1.0 + ROUNDING);
   });
 }

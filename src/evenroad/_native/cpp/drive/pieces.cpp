@@ -17,15 +17,16 @@ Motion Steering::motion(const Pose& from, const Piece& piece) const {
   return Motion::arc(from, piece.side / radius, piece.length);
 }
 
+void Gears::drive(const Piece& piece) {
+  if (std::abs(piece.length) <= NO_LENGTH * steering_.per_radian() || steering_.is_on_the_spot(piece)) return;
+  if (before_ * piece.length < 0.0) cusps_++;
+  before_ = piece.length;
+}
+
 int cusps(const Steering& steering, std::span<const Piece> pieces) {
-  double before = 0.0;
-  int count = 0;
-  for (const Piece& piece : pieces) {
-    if (std::abs(piece.length) <= NO_LENGTH * steering.per_radian() || steering.is_on_the_spot(piece)) continue;
-    if (before * piece.length < 0.0) count++;
-    before = piece.length;
-  }
-  return count;
+  Gears gears(steering);
+  for (const Piece& piece : pieces) gears.drive(piece);
+  return gears.cusps();
 }
 
 double cost(const Steering& steering, std::span<const Piece> pieces) {

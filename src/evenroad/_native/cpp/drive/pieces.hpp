@@ -12,6 +12,8 @@ namespace evenroad::drive {
 struct Piece {
   int side = 0;
   double length = 0.0;
+
+  bool operator==(const Piece&) const = default;
 };
 
 /// How a car steers, in units of length of its own.
@@ -29,6 +31,19 @@ struct Steering {
 
   Motion motion(const Pose& from, const Piece& piece) const;
   Pose after(const Pose& from, const Piece& piece) const { return motion(from, piece).at(1.0); }
+};
+
+/// Counts changes between forwards and backwards, piece by piece.
+class Gears {
+ public:
+  explicit Gears(const Steering& steering) : steering_(steering) {}
+  void drive(const Piece& piece);
+  int cusps() const { return cusps_; }
+
+ private:
+  const Steering& steering_;
+  double before_ = 0.0;
+  int cusps_ = 0;
 };
 
 /// Return how often pieces change between forwards and backwards.

@@ -14,66 +14,128 @@ constexpr double SHORTEST = 0.05;
 constexpr std::size_t MOST_WORDS = 6;
 /// Least that a shortcut has to save [cells].
 constexpr double LEAST_SAVED = 1e-6;
+/// Number of tries that have to save this share of the cost together: else there are no more.
+constexpr std::int64_t BATCH = 24;
+constexpr double SAVED_IN_BATCH = 2e-3;
 
-double length_of(std::span<const Piece> path) {
-  double total = 0.0;
-  for (const Piece& piece : path) total += std::abs(piece.length);
-  return total;
-}
-
-/// What of a path lies between two lengths along it.
-std::vector<Piece> cut(std::span<const Piece> path, double from, double to) {
-  std::vector<Piece> pieces;
-  double at = 0.0;
-  for (const Piece& piece : path) {
-    const double length = std::abs(piece.length), first = std::max(from - at, 0.0), last = std::min(to - at, length);
-    if (first < last) pieces.push_back({piece.side, std::copysign(last - first, piece.length)});
-    at += length;
+/// A path, and where its pieces begin.
+class Driven {
+ public:
+  Driven(Checks& checks, const Steering& steering, const Pose& start, std::vector<Piece> pieces)
+      : checks_(checks), steering_(steering), start_(start) {
+    drive(std::move(pieces));
   }
-  return pieces;
-}
 
-/// Replace what lies between two lengths along a path of some cost by a word that costs less, if one is free.
-void try_between(Checks& checks, const Steering& steering, const Pose& start, std::vector<Piece>& path, double& best,
-                 double from, double to) {
-  const double total = length_of(path);
-  const std::vector<Piece> head = cut(path, 0.0, from), tail = cut(path, to, total);
-  const Pose a = pose_after(steering, start, path, from), b = pose_after(steering, start, path, to);
-  const std::vector<Word> words = Words(steering, a, b).cheapest(to - from + 3.0 * steering.cusp);
-  for (std::size_t i = 0; i < std::min(words.size(), MOST_WORDS); i++) {
-    std::vector<Piece> pieces = head;
-    pieces.insert(pieces.end(), words[i].pieces().begin(), words[i].pieces().end());
-    pieces.insert(pieces.end(), tail.begin(), tail.end());
-    pieces = merged(steering, pieces);
-    const double other = cost(steering, pieces);
-    if (other >= best - LEAST_SAVED || !are_free(checks, steering, a, words[i].pieces())) continue;
-    path = std::move(pieces), best = other;
-    return;
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  double cost() const { return cost_; }
+  double length() const { return begins_.back().after; }
+  /// Return the least cost of a path without obstacles.
+  double least() const { return Words(steering_, start_, begins_.back().pose).best().cost; }
+
+  /// Replace what lies between two lengths along the path by a word with which it costs less, if one is free.
+  void shorten(double from, double to) {
+    const Place first = place_at(from), last = place_at(to);
+    const Words words(steering_, first.pose, last.pose);
+    struct Choice {
+      double cost;
+      const Word* word;
+    };
+    std::array<Choice, 44> choices;
+    std::size_t count = 0;
+    for (const Word& word : words.all()) {
+      Gears gears(steering_);
+      for (std::size_t i = 0; i <= first.piece; i++) gears.drive(pieces_[i]);
+      for (const Piece& piece : word.pieces()) gears.drive(piece);
+      for (std::size_t i = last.piece; i < pieces_.size(); i++) gears.drive(pieces_[i]);
+      const double cost = length() - (to - from) + word.length + steering_.cusp * gears.cusps();
+      if (cost < cost_ - LEAST_SAVED) choices[count++] = {cost, &word};
+    }
+    std::sort(choices.begin(), choices.begin() + count,
+              [](const Choice& a, const Choice& b) { return a.cost < b.cost; });
+    for (std::size_t i = 0; i < std::min(count, MOST_WORDS); i++) {
+      const std::span<const Piece> between = choices[i].word->pieces();
+      if (!are_free(checks_, steering_, first.pose, between)) continue;
+      std::vector<Piece> pieces(pieces_.begin(), pieces_.begin() + static_cast<std::ptrdiff_t>(first.piece));
+      pieces.push_back(part(first.piece, 0.0, first.after));
+      pieces.insert(pieces.end(), between.begin(), between.end());
+      pieces.push_back(part(last.piece, last.after, std::abs(pieces_[last.piece].length)));
+      pieces.insert(pieces.end(), pieces_.begin() + static_cast<std::ptrdiff_t>(last.piece) + 1, pieces_.end());
+      drive(merged(steering_, pieces));
+      return;
+    }
   }
-}
+
+ private:
+  /// A place on the path: which piece it is on, and after what length of it.
+  struct Place {
+    std::size_t piece;
+    double after;
+    Pose pose;
+  };
+  /// Where a piece begins, and after what length of the path.
+  struct Begin {
+    double after;
+    Pose pose;
+  };
+
+  void drive(std::vector<Piece> pieces) {
+    pieces_ = std::move(pieces);
+    begins_ = {{0.0, start_}};
+    for (const Piece& piece : pieces_) {
+      const auto& [after, pose] = begins_.back();
+      begins_.push_back({after + std::abs(piece.length), steering_.after(pose, piece)});
+    }
+    cost_ = drive::cost(steering_, pieces_);
+  }
+
+  Piece part(std::size_t number, double from, double to) const {
+    return {pieces_[number].side, std::copysign(to - from, pieces_[number].length)};
+  }
+
+  Place place_at(double along) const {
+    std::size_t number = 0;
+    while (number + 1 < pieces_.size() && begins_[number + 1].after < along) number++;
+    const double after = std::min(along - begins_[number].after, std::abs(pieces_[number].length));
+    return {number, after, steering_.after(begins_[number].pose, part(number, 0.0, after))};
+  }
+
+  Checks& checks_;
+  const Steering& steering_;
+  Pose start_;
+  std::vector<Piece> pieces_;
+  std::vector<Begin> begins_;  ///< Of each piece, and of what would follow.
+  double cost_ = 0.0;
+};
 
 }  // namespace
 
 std::int64_t shorten(Checks& checks, const Steering& steering, const Pose& start, std::vector<Piece>& path,
                      std::int64_t tries) {
+  if (path.empty() || tries == 0) return 0;
   EvenPoints even;
-  double best = cost(steering, path);
+  Driven driven(checks, steering, start, path);
+  const double enough = driven.least() + LEAST_SAVED;
+  double before = driven.cost();
   std::int64_t k = 0;
   // A path changes as a whole: when the time is over, what is there is a path.
   try {
-    for (; k < tries; k++) {
+    for (; k < tries && driven.cost() > enough; k++) {
       look_at_clock();
       even.next();
-      const double total = length_of(path);
+      if (k > 0 && k % BATCH == 0) {
+        if (before - driven.cost() < SAVED_IN_BATCH * before) break;
+        before = driven.cost();
+      }
+      const double total = driven.length();
       // The whole first, then from the start and from the goal in turns.
       double from = k % 4 == 0 ? 0.0 : even[0] * total, to = k % 4 == 1 || k == 0 ? total : even[1] * total;
       if (from > to) std::swap(from, to);
-      if (to - from >= SHORTEST * steering.per_radian()) try_between(checks, steering, start, path, best, from, to);
+      if (to - from >= SHORTEST * steering.per_radian()) driven.shorten(from, to);
     }
   } catch (const TimeIsOver&) {
-    return k;
   }
-  return tries;
+  path = driven.pieces();
+  return k;
 }
 
 }  // namespace evenroad::drive

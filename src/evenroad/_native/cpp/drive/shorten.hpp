@@ -8,8 +8,8 @@
 
 namespace evenroad::drive {
 
-/// Make a free path from a pose shorter by that many tries, and return how many were made: fewer where the time is
-/// over. The end stays where it is, but for rounding.
+/// Make a free path from a pose shorter by at most that many tries, and return how many were made: fewer where the time
+/// is over, or where more of them would hardly save anything.  The end stays where it is, but for rounding.
 std::int64_t shorten(Checks& checks, const Steering& steering, const Pose& start, std::vector<Piece>& path,
                      std::int64_t tries);
 

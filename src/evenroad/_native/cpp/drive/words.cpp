@@ -14,8 +14,9 @@ constexpr double NO_TURN = 1e-10;
 
 /// A point by its distance from the origin and its direction, which is rounding where it is that near.
 struct Polar {
-  double r, angle;
-  Polar(double x, double y) : r(std::hypot(x, y)), angle(r < NO_TURN ? 0.0 : std::atan2(y, x)) {}
+  double x, y, r;
+  Polar(double x_of, double y_of) : x(x_of), y(y_of), r(std::sqrt(x * x + y * y)) {}
+  double angle() const { return r < NO_TURN ? 0.0 : std::atan2(y, x); }
 };
 
 /// Return an angle in [0, 2 pi).
@@ -59,13 +60,14 @@ class Curves {
 
   /// Words that drive forwards.
   void add_dubins() {
-    add({{1, turned_left(same_.angle)}, {0, same_.r}, {1, turned_left(phi_ - same_.angle)}});
+    const double first = same_.angle();
+    add({{1, turned_left(first)}, {0, same_.r}, {1, turned_left(phi_ - first)}});
     if (other_.r >= 2.0) {
-      const double u = std::sqrt(other_.r * other_.r - 4.0), t = turned_left(other_.angle + std::atan2(2.0, u));
+      const double u = std::sqrt(other_.r * other_.r - 4.0), t = turned_left(other_.angle() + std::atan2(2.0, u));
       add({{1, t}, {0, u}, {-1, turned_left(t - phi_)}});
     }
     if (same_.r <= 4.0) {
-      const double u = -2.0 * std::asin(0.25 * same_.r), t = turned_left(same_.angle + 0.5 * u + PI);
+      const double u = -2.0 * std::asin(0.25 * same_.r), t = turned_left(first + 0.5 * u + PI);
       add({{1, t}, {-1, 2.0 * PI + u}, {1, turned_left(phi_ - t + u)}});
     }
   }
@@ -79,10 +81,10 @@ class Curves {
  private:
   /// A turn, a straight drive, a turn.
   void add_straight() {
-    const double first = forwards(same_.angle), last = forwards(phi_ - first);
+    const double first = forwards(same_.angle()), last = forwards(phi_ - first);
     if (first >= 0.0 && last >= 0.0) add({{1, first}, {0, same_.r}, {1, last}});
     if (other_.r < 2.0) return;
-    const double u = std::sqrt(other_.r * other_.r - 4.0), t = forwards(other_.angle + std::atan2(2.0, u));
+    const double u = std::sqrt(other_.r * other_.r - 4.0), t = forwards(other_.angle() + std::atan2(2.0, u));
     if (const double v = forwards(t - phi_); t >= 0.0 && v >= 0.0) add({{1, t}, {0, u}, {-1, v}});
   }
 
@@ -90,18 +92,19 @@ class Curves {
   void add_with_cusp(bool is_flipped) {
     const double x = is_flipped ? x_ * cosine_ + y_ * sine_ : x_, y = is_flipped ? x_ * sine_ - y_ * cosine_ : y_;
     const Polar same(x - sine_, y - 1.0 + cosine_), other(x + sine_, y - 1.0 - cosine_);
+    const double angle = same.angle();
     if (same.r <= 4.0) {
-      const double u = -2.0 * std::asin(0.25 * same.r), t = forwards(same.angle + 0.5 * u + PI);
+      const double u = -2.0 * std::asin(0.25 * same.r), t = forwards(angle + 0.5 * u + PI);
       const double v = wrapped(phi_ - t + u);
       if (t >= 0.0 && u <= 0.0) add({{1, t}, {-1, u}, {1, v}}, is_flipped);
     }
     if (same.r >= 2.0) {
-      const double r = std::sqrt(same.r * same.r - 4.0), u = 2.0 - r, t = forwards(same.angle + std::atan2(r, -2.0));
+      const double r = std::sqrt(same.r * same.r - 4.0), u = 2.0 - r, t = forwards(angle + std::atan2(r, -2.0));
       const double v = backwards(phi_ - 0.5 * PI - t);
       if (t >= 0.0 && u <= 0.0 && v <= 0.0) add({{1, t}, {-1, -0.5 * PI}, {0, u}, {1, v}}, is_flipped);
     }
     if (other.r >= 2.0) {
-      const double t = forwards(Polar(1.0 + cosine_ - y, x + sine_).angle), u = 2.0 - other.r;
+      const double t = forwards(Polar(1.0 + cosine_ - y, x + sine_).angle()), u = 2.0 - other.r;
       const double v = backwards(t + 0.5 * PI - phi_);
       if (t >= 0.0 && u <= 0.0 && v <= 0.0) add({{1, t}, {-1, -0.5 * PI}, {0, u}, {-1, v}}, is_flipped);
     }
@@ -165,7 +168,7 @@ Words::Words(const Steering& steering, const Pose& from, const Pose& to, bool is
     const Polar by(c * dx + s * dy, c * dy - s * dx);
     for (const int gear : {1, -1}) {
       if (!steering.is_reversing && gear != flip) continue;
-      const double heading = by.r < NO_TURN ? 0.0 : wrapped(gear > 0 ? by.angle : by.angle + PI);
+      const double heading = by.r < NO_TURN ? 0.0 : wrapped(gear > 0 ? by.angle() : by.angle() + PI);
       for (const double first : {heading, heading - std::copysign(2.0 * PI, heading)}) {
         for (const double whole : {0.0, 2.0 * PI}) {
           const double rest = wrapped(turn - heading), last = rest - std::copysign(whole, rest);

@@ -57,6 +57,11 @@ class Disk {
   std::uint8_t cell(std::int64_t row, std::int64_t column) const {
     return cells_.at(row, column, [this](const Square& square) { return classify(occupancy_, radius_, square); });
   }
+  /// Return the same, or UNDECIDED where the state is not known yet and few have asked.
+  std::uint8_t cell_if_known(std::int64_t row, std::int64_t column) const {
+    const auto make = [this](const Square& square) { return classify(occupancy_, radius_, square); };
+    return cells_.at(row, column, make, UNDECIDED);
+  }
   /// Say whether a cell is at a gate (see gates).
   bool is_gate(std::int64_t row, std::int64_t column) const {
     return gates_.at(row, column, [this](const Square& square) { return gates_of(square); }) != 0;

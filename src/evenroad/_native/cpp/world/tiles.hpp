@@ -18,7 +18,10 @@ namespace evenroad::world {
 class Tiles {
  public:
   Tiles(std::int64_t rows, std::int64_t columns, int shift)
-      : shift_(shift), wide_(((columns - 1) >> shift) + 1), tiles_((((rows - 1) >> shift) + 1) * wide_) {}
+      : shift_(shift),
+        wide_(((columns - 1) >> shift) + 1),
+        tiles_((((rows - 1) >> shift) + 1) * wide_),
+        asked_(tiles_.size()) {}
 
   /// Return a byte; make(square) returns those of a tile that is not there yet.
   template <class Make>
@@ -33,7 +36,21 @@ class Tiles {
     return tile[(row & inside) << shift_ | (column & inside)];
   }
 
+  /// Return the same, or `unknown` where a tile is not there and has hardly been asked for: to make one takes as long
+  /// as some hundred slow checks.
+  template <class Make>
+  std::uint8_t at(std::int64_t row, std::int64_t column, const Make& make, std::uint8_t unknown) const {
+    const std::int64_t number = (row >> shift_) * wide_ + (column >> shift_);
+    if (tiles_[number].load(std::memory_order_acquire) == nullptr && asked_[number] < OFTEN) [[unlikely]] {
+      asked_[number]++;
+      return unknown;
+    }
+    return at(row, column, make);
+  }
+
  private:
+  static constexpr std::uint8_t OFTEN = 100;
+
   /// Store a tile; tiles with a single value are shared.
   const std::uint8_t* keep(std::int64_t number, std::unique_ptr<std::uint8_t[]> made) const {
     const std::scoped_lock lock(keeping_);
@@ -53,6 +70,7 @@ class Tiles {
   int shift_;
   std::int64_t wide_;
   mutable std::vector<std::atomic<const std::uint8_t*>> tiles_;
+  mutable std::vector<std::atomic<std::uint8_t>> asked_;
   mutable std::mutex keeping_;
   mutable std::vector<std::unique_ptr<std::uint8_t[]>> kept_;
   mutable std::array<std::unique_ptr<std::uint8_t[]>, 256> uniform_;
