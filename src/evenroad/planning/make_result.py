@@ -33,13 +33,12 @@ def solution(
     raw_cost: float | None = None,
     message: str = "",
     proof: str = "",
-    is_led: bool = False,
     **more: object,
 ) -> PlanResult:
     """Return the result with a path to one of the goals, and with the `raw` path before smoothing.
 
-    Costs are lengths by default; the message says which they are.  `is_led`: the paths lead there already, as `led`
-    would have them do.
+    Costs are lengths by default; the message says which they are.  Paths with `pieces` that are driven lead from the very
+    start to the very goal already.
     """
     world = problem.world
     cost = path_length(path, world.space) if cost is None else cost
@@ -60,11 +59,10 @@ def solution(
             "milestone_cost": raw_cost,
             **more,
         },
-        is_led=is_led,
     )
 
 
-def _made(problem: Problem, attributes: dict[str, object], *, is_led: bool = False) -> PlanResult:
+def _made(problem: Problem, attributes: dict[str, object]) -> PlanResult:
     # Set at once. A frozen class sets one field after the other, which takes twice as long.
     result = object.__new__(PlanResult)
     world = problem.world
@@ -72,7 +70,7 @@ def _made(problem: Problem, attributes: dict[str, object], *, is_led: bool = Fal
     given = problem.given
     poses = () if given is None else tuple(goal for goal, _ in given.poses)
     vars(result).update(attributes, world=world, poses=poses)
-    return result if is_led else led(world, result)
+    return result if "pieces" in attributes else led(world, result)
 
 
 def unreached(problem: Problem) -> PlanResult | None:

@@ -162,7 +162,6 @@ def _result(attempt: Attempt, queries: Sequence[CarQuery], number: int, space: C
         planner=attempt.planner,
         counts=counts,
         timings=attempt.watch.seconds,
-        is_led=True,
         pieces=pieces,
     )
 
