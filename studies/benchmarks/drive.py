@@ -4,7 +4,12 @@ Random queries of three turning radii on one map, and parking cases, all with pr
 map of nav2_bringup, ``tpcap_case1.csv`` a case of TPCAP; neither is in the repository::
 
     python -m studies.benchmarks.drive --map depot.yaml -n 200
+    python -m studies.benchmarks.drive --map depot.yaml --forward-only --seconds 2
+    python -m studies.benchmarks.drive --map depot.yaml -n 12 --best 30
     python -m studies.benchmarks.drive --cases tpcap_case*.csv
+
+With `--best`, each query is planned again with other seeds for that many seconds of processor time, and lengths are
+compared with that of the shortest path.
 
 Polygons of a case are tested as they are.
 """
@@ -78,6 +83,29 @@ def on_map(path: Path, count: int, seconds: float, *, reverse: bool) -> None:
         report(f"{path.stem}, radius {radius:g}", results, times, bad)
 
 
+def lengths(path: Path, count: int, seconds: float) -> None:
+    """Compare the length of each path with the best one of a long run."""
+    grid = er.load_map(path)
+    for radius in RADII:
+        world = grid.world(footprint=ROBOT, turning_radius=radius)
+        q = world.space.from_cube(np.random.default_rng(2).random((40 * count + 400, 3)))
+        q = q[world.valid(q)][: 2 * count]
+        ratios = []
+        for start, goal in zip(q[:count], q[count:], strict=True):
+            first = er.plan(world, start, goal)
+            best, seed, began = first.cost, 0, time.thread_time()
+            while first.solved and time.thread_time() - began < seconds:
+                seed += 1
+                best = min(best, er.plan(world, start, goal, rng=seed).cost)
+            ratios += [first.cost / best] if first.solved else []
+        median, p95, most = np.percentile(ratios, (50, 95, 100))
+        print(
+            f"{path.stem}, radius {radius:g}: {len(ratios)} lengths by the best of {seconds:g} s: {median:.3f},"
+            f" p95 {p95:.3f}, max {most:.3f}",
+            flush=True,
+        )
+
+
 def on_cases(paths: list[Path], seconds: float) -> None:
     """Plan each parking case with eight seeds."""
     for path in paths:
@@ -98,10 +126,13 @@ def main() -> None:
     parser.add_argument("--map", type=Path, help="a map, for random queries")
     parser.add_argument("-n", type=int, default=200, help="queries for each turning radius")
     parser.add_argument("--forward-only", action="store_true")
+    parser.add_argument("--best", type=float, default=0.0, help="compare lengths with those of a run of these seconds")
     parser.add_argument("--cases", type=Path, nargs="*", default=[], help="parking cases")
     parser.add_argument("--seconds", type=float, default=5.0)
     given = parser.parse_args()
-    if given.map is not None:
+    if given.map is not None and given.best:
+        lengths(given.map, given.n, given.best)
+    elif given.map is not None:
         on_map(given.map, given.n, given.seconds, reverse=not given.forward_only)
     on_cases(given.cases, given.seconds)
 

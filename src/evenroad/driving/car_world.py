@@ -31,6 +31,8 @@ SLICES = 144
 """Number of slices of the angle in a proof that there is no path."""
 _MOST_BOXES = 1_000_000
 """Largest number of boxes that such a proof goes to: some tenths of a second."""
+_MOST_DRIVEN = 300_000
+"""The same from start and from goal, of a car that does not reverse."""
 _THIRD = 1.0 / 3.0
 """Share of a footprint at either end in which a contact is at a corner or a side."""
 
@@ -198,7 +200,8 @@ class CarWorld(OneOrMany):
 
         The largest disk inside of the footprint comes first: where that cannot get through, the robot cannot.  Then, if
         there is time, the angle is divided into slices, and the map into boxes of a cell and a slice: the robot cannot
-        be in those where all poses touch something.
+        be in those where all poses touch something.  For a car that does not reverse, boxes are instead joined by what
+        it can drive to, at its turning radius.
         """
         poses = as_batch("start and goals", np.vstack([start, goals]), 3)
         for centre in self._footprint.inscribed[0]:
@@ -212,6 +215,15 @@ class CarWorld(OneOrMany):
         if quickly or not self.valid(poses[:1])[0]:
             return None
         free = poses[1:][self.valid(poses[1:])]
+        if isinstance(self.space, CarSpace) and self.turning_radius > 0.0 and not self.reverse:
+            steering = self.space.steering
+            if not all(self.vehicle.is_unreachable(steering, poses[0], goal, _MOST_DRIVEN) for goal in free):
+                return None
+            message = (
+                "proved: there is no path; forwards alone, and with its turning radius, the car does not get from start"
+                " to goal"
+            )
+            return Apart(message, proved=True)
         if not all(self.vehicle.are_apart(poses[0], goal, SLICES, _MOST_BOXES) for goal in free):
             return None
         message = (

@@ -37,8 +37,8 @@ def solution(
 ) -> PlanResult:
     """Return the result with a path to one of the goals, and with the `raw` path before smoothing.
 
-    Costs are lengths by default; the message says which they are.  Paths with `pieces` that are driven lead from the very
-    start to the very goal already.
+    Costs are lengths by default; the message says which they are.  Paths with `pieces` lead from the very start to
+    the very goal already.
     """
     world = problem.world
     cost = path_length(path, world.space) if cost is None else cost

@@ -31,6 +31,9 @@ SHORTCUTS, QUICK_SHORTCUTS = 200, 60
 """Largest numbers of shortcuts that are tried, and of those that are with ``smooth="quick"``."""
 _BEFORE_PROOFS = (1, True), (4, False)
 """Numbers of rounds of the search before a proof that there is no path, and whether that is a quick one."""
+_CELLS_A_ROUND, _MOST_ROUNDS = 15_000, 40
+"""Number of cells of a map for which one more round comes before the full proof, which takes the longer the more there
+are; and the largest number of such rounds."""
 _SAME = 1e-7
 """Largest distance of the end of a path from its goal: rounding, in cells and radians."""
 
@@ -115,10 +118,13 @@ class CarSearch:
 
 def _searched(attempt: Attempt, queries: Sequence[CarQuery], order: list[int]) -> int | PlanResult:
     """Return which query found a path first, or the result that there is none."""
+    world = attempt.world
+    assert isinstance(world, CarWorld), "cars drive in their own world"
     for rounds, quickly in _BEFORE_PROOFS:
+        more = 0 if quickly else min(world.grid.occupied.size // _CELLS_A_ROUND, _MOST_ROUNDS)
         with attempt.watch("search"):
             for number in order:
-                if queries[number].search(rounds):
+                if queries[number].search(rounds + more):
                     return number
         if (apart := shown_apart(attempt, quickly=quickly)) is not None:
             return apart

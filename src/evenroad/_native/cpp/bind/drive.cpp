@@ -3,6 +3,7 @@
 
 #include "bind/arrays.hpp"
 #include "drive/car_query.hpp"
+#include "drive/forward_reach.hpp"
 #include "drive/slices.hpp"
 
 namespace evenroad::bind {
@@ -280,6 +281,19 @@ bool are_apart(const drive::Vehicle& vehicle, nb::handle start, nb::handle goal,
   });
 }
 
+/// Whether it is proved that a car that drives only forwards does not get from a free pose to another.
+bool is_unreachable(const drive::Vehicle& vehicle, const drive::Steering& steering, nb::handle start, nb::handle goal,
+                    std::int64_t most) {
+  const drive::Pose from = vehicle.to_cells(pose_of(start, "start")), to = vehicle.to_cells(pose_of(goal, "goal"));
+  require(!steering.is_reversing && steering.radius > 0.0, "steering must be of a car that turns and does not reverse");
+  require_budget(most, "most");
+  return without_gil([&] {
+    drive::Checks checks(vehicle);
+    require(checks.is_free(from) && checks.is_free(to), "start and goal must be free");
+    return drive::ForwardReach(vehicle, steering.in(vehicle.scale())).find(from, to, most) == drive::Apart::PROVED;
+  });
+}
+
 std::optional<drive::Contact> contact(const drive::Vehicle& vehicle, nb::handle q) {
   const drive::Pose pose = vehicle.to_cells(pose_of(q, "q"));
   return without_gil([&] {
@@ -427,6 +441,7 @@ void add_drive(nb::module_& module) {
       .def("pieces_free", &pieces_free, "steering"_a, "start"_a.none(), "pieces"_a.none())
       .def("gaps", &gaps, "q"_a.none())
       .def("are_apart", &are_apart, "start"_a.none(), "goal"_a.none(), "slices"_a, "most"_a)
+      .def("is_unreachable", &is_unreachable, "steering"_a, "start"_a.none(), "goal"_a.none(), "most"_a)
       .def("contact", &contact, "q"_a.none())
       .def("side_contact", &side_contact, "q"_a.none());
   nb::class_<drive::CarQuery>(part, "CarQuery", "A search for the path of a car between two free poses.")

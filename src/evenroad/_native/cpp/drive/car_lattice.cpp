@@ -19,10 +19,10 @@ constexpr double STEPS_A_JOIN = 8.0;
 
 }  // namespace
 
-CarLattice::CarLattice(Checks& checks, DiskWays& ways, const Steering& steering, const Pose& from, const Pose& to,
-                       bool is_backwards)
+CarLattice::CarLattice(Checks& checks, DiskPaths& disk_paths, const Steering& steering, const Pose& from,
+                       const Pose& to, bool is_backwards)
     : checks_(checks),
-      ways_(ways),
+      disk_paths_(disk_paths),
       steering_(steering),
       from_(from),
       to_(to),
@@ -51,7 +51,7 @@ bool CarLattice::expand(int poses) {
 }
 
 double CarLattice::estimate(const Pose& pose) {
-  return std::max(ways_.length_from(pose), Words(steering_, pose, to_, is_backwards_).best().length);
+  return std::max(disk_paths_.length_from(pose), Words(steering_, pose, to_, is_backwards_).best().length);
 }
 
 std::uint64_t CarLattice::cell_of(const Pose& pose) const {

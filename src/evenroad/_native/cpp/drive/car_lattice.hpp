@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "drive/disk_ways.hpp"
+#include "drive/disk_paths.hpp"
 #include "drive/words.hpp"
 
 namespace evenroad::drive {
@@ -18,8 +18,8 @@ namespace evenroad::drive {
 class CarLattice {
  public:
   /// Search from one free pose to another; backwards along the path where the first is the goal of the query.
-  /// The ways lead to that one.
-  CarLattice(Checks& checks, DiskWays& ways, const Steering& steering, const Pose& from, const Pose& to,
+  /// The disk paths lead to that one.
+  CarLattice(Checks& checks, DiskPaths& disk_paths, const Steering& steering, const Pose& from, const Pose& to,
              bool is_backwards);
 
   /// Expand that many poses; return whether there is a path.
@@ -51,7 +51,7 @@ class CarLattice {
   bool join(int node);
 
   Checks& checks_;
-  DiskWays& ways_;
+  DiskPaths& disk_paths_;
   Steering steering_;
   Pose from_, to_;
   bool is_backwards_;

@@ -42,9 +42,9 @@ class CarQuery {
   Checks checks_;
   Steering steering_;
   Pose start_, goal_;
-  DiskWays to_goal_;
+  DiskPaths to_goal_;
   CarTrees trees_;
-  std::optional<DiskWays> to_start_;
+  std::optional<DiskPaths> to_start_;
   /// From the start, and from the goal of a car that drives only forwards; they begin with the second round.
   std::optional<CarLattice> forwards_, backwards_;
   std::int64_t round_ = 0, shortcuts_ = 0;

@@ -35,10 +35,10 @@ double EvenPoints::operator[](int axis) const {
   return value - std::floor(value);
 }
 
-CarTrees::CarTrees(Checks& checks, DiskWays& ways, const Steering& steering, const Pose& start, const Pose& goal,
+CarTrees::CarTrees(Checks& checks, DiskPaths& disk_paths, const Steering& steering, const Pose& start, const Pose& goal,
                    std::uint64_t variant)
     : checks_(checks),
-      ways_(ways),
+      disk_paths_(disk_paths),
       steering_(steering),
       roots_{start, goal},
       chunk_(std::max(steering.per_radian(), 0.5 * checks.vehicle().footprint().reach)),
@@ -51,7 +51,7 @@ bool CarTrees::grow(int turns) {
   if (turns_ == 0 && join_straight()) return true;
   for (; turns > 0; turns--, turns_++) {
     look_at_clock();
-    if (turns_ == BEFORE_ROUTE) route_ = ways_.route_from(roots_[0]);
+    if (turns_ == BEFORE_ROUTE) route_ = disk_paths_.route_from(roots_[0]);
     if (turns_ % 3 == 2 && trees_[growing_].next < trees_[growing_].waiting.size()) {
       if (move_to_contact(growing_)) return true;
       growing_ = 1 - growing_;

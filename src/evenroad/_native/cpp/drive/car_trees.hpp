@@ -11,7 +11,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "drive/disk_ways.hpp"
+#include "drive/disk_paths.hpp"
 #include "drive/words.hpp"
 
 namespace evenroad::drive {
@@ -31,9 +31,9 @@ class EvenPoints {
 
 class CarTrees {
  public:
-  /// Grow from free poses; `checks` and `ways`, to the goal, must last as long as this.  Other variants have other
-  /// samples.
-  CarTrees(Checks& checks, DiskWays& ways, const Steering& steering, const Pose& start, const Pose& goal,
+  /// Grow from free poses; `checks` and `disk_paths`, to the goal, must last as long as this.  Other variants have
+  /// other samples.
+  CarTrees(Checks& checks, DiskPaths& disk_paths, const Steering& steering, const Pose& start, const Pose& goal,
            std::uint64_t variant);
 
   /// Grow that many turns; return whether the trees have met.
@@ -75,7 +75,7 @@ class CarTrees {
   bool join(int from_start, int from_goal);
 
   Checks& checks_;
-  DiskWays& ways_;
+  DiskPaths& disk_paths_;
   Steering steering_;
   std::array<Pose, 2> roots_;
   std::array<Tree, 2> trees_;

@@ -34,7 +34,7 @@ class Driven {
 
   /// Replace what lies between two lengths along the path by a word with which it costs less, if one is free.
   void shorten(double from, double to) {
-    const Place first = place_at(from), last = place_at(to);
+    const Position first = position_at(from), last = position_at(to);
     const Words words(steering_, first.pose, last.pose);
     struct Choice {
       double cost;
@@ -67,7 +67,7 @@ class Driven {
 
  private:
   /// A place on the path: which piece it is on, and after what length of it.
-  struct Place {
+  struct Position {
     std::size_t piece;
     double after;
     Pose pose;
@@ -92,7 +92,7 @@ class Driven {
     return {pieces_[number].side, std::copysign(to - from, pieces_[number].length)};
   }
 
-  Place place_at(double along) const {
+  Position position_at(double along) const {
     std::size_t number = 0;
     while (number + 1 < pieces_.size() && begins_[number + 1].after < along) number++;
     const double after = std::min(along - begins_[number].after, std::abs(pieces_[number].length));

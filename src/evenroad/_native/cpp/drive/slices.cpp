@@ -64,8 +64,11 @@ void shift(std::span<const std::uint64_t> line, std::int64_t by, std::span<std::
 }  // namespace
 
 Slices::Slices(const Vehicle& vehicle, std::int64_t count)
+    : Slices(vehicle, count, vehicle.footprint().inner.centres[0]) {}
+
+Slices::Slices(const Vehicle& vehicle, std::int64_t count, Vec point)
     : vehicle_(vehicle),
-      centre_(vehicle.footprint().inner.centres[0]),
+      centre_(point),
       count_(count),
       rows_(vehicle.rows()),
       columns_(vehicle.columns()),

@@ -19,11 +19,14 @@ class Slices {
  public:
   /// Divide the angle into that many slices; what is known of them is found when it is needed.
   Slices(const Vehicle& vehicle, std::int64_t count);
+  /// The same, of boxes whose cells hold another point of the body than the centre of the disk inside.
+  Slices(const Vehicle& vehicle, std::int64_t count, Vec point);
 
   /// Say whether two free poses are apart; at most that many boxes are gone to.
   Apart find(const Pose& start, const Pose& goal, std::int64_t most);
 
  private:
+  friend class ForwardReach;
   struct Box {
     std::int64_t slice, row, column;
   };

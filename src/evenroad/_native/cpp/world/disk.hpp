@@ -57,7 +57,7 @@ class Disk {
   std::uint8_t cell(std::int64_t row, std::int64_t column) const {
     return cells_.at(row, column, [this](const Square& square) { return classify(occupancy_, radius_, square); });
   }
-  /// Return the same, or UNDECIDED where the state is not known yet and few have asked.
+  /// Return the same, or UNDECIDED where the state is not known yet and checks there are few.
   std::uint8_t cell_if_known(std::int64_t row, std::int64_t column) const {
     const auto make = [this](const Square& square) { return classify(occupancy_, radius_, square); };
     return cells_.at(row, column, make, UNDECIDED);

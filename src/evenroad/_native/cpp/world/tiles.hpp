@@ -36,7 +36,7 @@ class Tiles {
     return tile[(row & inside) << shift_ | (column & inside)];
   }
 
-  /// Return the same, or `unknown` where a tile is not there and has hardly been asked for: to make one takes as long
+  /// Return the same, or `unknown` where a tile is not there and was hardly needed yet: to make one takes as long
   /// as some hundred slow checks.
   template <class Make>
   std::uint8_t at(std::int64_t row, std::int64_t column, const Make& make, std::uint8_t unknown) const {

@@ -1,4 +1,4 @@
-#include "drive/disk_ways.hpp"
+#include "drive/disk_paths.hpp"
 
 #include <limits>
 #include <numbers>
@@ -15,13 +15,13 @@ constexpr std::int32_t STEP = 16, DIAGONAL = 22;
 constexpr std::uint8_t SHUT = 255;
 /// More than what any step costs.
 constexpr std::size_t BUCKETS = 128;
-/// Side of a cell of these ways, as a share of the disk's radius.
+/// Side of a cell, as a share of the disk's radius.
 constexpr double SIDE = 0.5;
 /// A disk walks over cells to its eight neighbours: 8 % longer than straight at most.
 constexpr double STRAIGHTER = 0.92;
 /// What a unit of length costs more at an obstacle, and distance from which on it costs no more, in radii of the disk.
 constexpr double NEARNESS = 2.0, NEAR = 2.5;
-/// The direction of travel is that between the places this many before and behind.
+/// The direction of travel is that between the points this many before and behind.
 constexpr std::size_t AROUND = 2;
 /// Largest number of cells.
 constexpr double MOST_CELLS = 4e6;
@@ -36,7 +36,7 @@ std::int64_t stride_for(const Vehicle& vehicle) {
 
 }  // namespace
 
-DiskWays::DiskWays(const Vehicle& vehicle, const Pose& start, const Pose& goal)
+DiskPaths::DiskPaths(const Vehicle& vehicle, const Pose& start, const Pose& goal)
     : vehicle_(vehicle),
       centre_(vehicle.footprint().inner.centres[0]),
       stride_(stride_for(vehicle)),
@@ -45,41 +45,41 @@ DiskWays::DiskWays(const Vehicle& vehicle, const Pose& start, const Pose& goal)
       start_(cell_of(start)),
       goal_(cell_of(goal)) {}
 
-double DiskWays::length_from(const Pose& pose) {
+double DiskPaths::length_from(const Pose& pose) {
   const std::int32_t cell = cell_of(pose);
   if (!reach(cell)) return std::numeric_limits<double>::infinity();
   return std::max(STRAIGHTER * cells_[cell].length - 3.0 * static_cast<double>(stride_), 0.0);
 }
 
-std::vector<Pose> DiskWays::route_from(const Pose& pose) {
+std::vector<Pose> DiskPaths::route_from(const Pose& pose) {
   std::int32_t cell = cell_of(pose);
   std::vector<Pose> route;
   if (!reach(cell)) return route;
-  std::vector<Vec> places;
-  for (; cell != goal_; cell = cells_[cell].next) places.push_back(middle_of(cell));
-  for (std::size_t i = 0; i < places.size() && places.size() > 1; i++) {
-    const Vec by = places[std::min(i + AROUND, places.size() - 1)] - places[i - std::min(i, AROUND)];
+  std::vector<Vec> points;
+  for (; cell != goal_; cell = cells_[cell].next) points.push_back(middle_of(cell));
+  for (std::size_t i = 0; i < points.size() && points.size() > 1; i++) {
+    const Vec by = points[std::min(i + AROUND, points.size() - 1)] - points[i - std::min(i, AROUND)];
     const double angle = std::atan2(by.y, by.x);
-    const Vec at = places[i] - Placed({0.0, 0.0, angle})(centre_);
+    const Vec at = points[i] - Placed({0.0, 0.0, angle})(centre_);
     route.push_back({at.x, at.y, angle});
   }
   return route;
 }
 
-std::int32_t DiskWays::cell_of(const Pose& pose) const {
+std::int32_t DiskPaths::cell_of(const Pose& pose) const {
   const Vec at = Placed(pose)(centre_);
   const auto row = std::clamp<std::int64_t>(static_cast<std::int64_t>(at.y) / stride_, 0, rows_ - 1);
   const auto column = std::clamp<std::int64_t>(static_cast<std::int64_t>(at.x) / stride_, 0, columns_ - 1);
   return static_cast<std::int32_t>(row * columns_ + column);
 }
 
-Vec DiskWays::middle_of(std::int32_t cell) const {
+Vec DiskPaths::middle_of(std::int32_t cell) const {
   const auto side = static_cast<double>(stride_);
   return {(static_cast<double>(cell % columns_) + 0.5) * side, (static_cast<double>(cell / columns_) + 0.5) * side};
 }
 
 /// A cell is open where the disk may be free somewhere in it.
-std::uint8_t DiskWays::weight_of(std::int64_t row, std::int64_t column) const {
+std::uint8_t DiskPaths::weight_of(std::int64_t row, std::int64_t column) const {
   const world::Disk& disk = vehicle_.inner();
   const Vec at = middle_of(static_cast<std::int32_t>(row * columns_ + column));
   const auto last_row = static_cast<double>(vehicle_.rows()) - 0.5,
@@ -94,14 +94,14 @@ std::uint8_t DiskWays::weight_of(std::int64_t row, std::int64_t column) const {
 }
 
 /// Return the least cost from a cell to the start.
-std::int32_t DiskWays::left_from(std::int64_t row, std::int64_t column) const {
+std::int32_t DiskPaths::left_from(std::int64_t row, std::int64_t column) const {
   const std::int64_t rows = std::abs(row - start_ / columns_), columns = std::abs(column - start_ % columns_);
   const std::int64_t both = std::min(rows, columns);
   return static_cast<std::int32_t>(DIAGONAL * both + STEP * (std::max(rows, columns) - both));
 }
 
 /// Search until the way from a cell is known; return whether there is one.
-bool DiskWays::reach(std::int32_t cell) {
+bool DiskPaths::reach(std::int32_t cell) {
   if (cells_.empty()) {
     cells_.assign(rows_ * columns_, {FAR, goal_, 0.0F, false, 0});
     buckets_.resize(BUCKETS);
@@ -124,7 +124,7 @@ bool DiskWays::reach(std::int32_t cell) {
 }
 
 /// Go on from a cell, whose way is known now, to its neighbours.
-void DiskWays::leave(std::int32_t cell) {
+void DiskPaths::leave(std::int32_t cell) {
   cells_[cell].is_done = true;
   const std::int64_t row = cell / columns_, column = cell % columns_;
   for (std::int64_t r = std::max<std::int64_t>(row - 1, 0); r <= std::min(row + 1, rows_ - 1); r++) {

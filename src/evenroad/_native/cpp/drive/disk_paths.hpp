@@ -1,4 +1,4 @@
-// Ways of the largest disk inside of a footprint to a goal, over every few cells: where a car probably drives, and
+// Paths of the largest disk inside of a footprint to a goal, over every few cells: where a car probably drives, and
 // about how far it has to; no proof.
 #pragma once
 
@@ -9,11 +9,11 @@
 
 namespace evenroad::drive {
 
-/// A search from the goal towards the start (A*), as far as it is asked for.  A step beside an obstacle costs more than
+/// A search from the goal towards the start (A*), as far as it is needed.  A step beside an obstacle costs more than
 /// its length.  Costs are small whole numbers, and wait in buckets.
-class DiskWays {
+class DiskPaths {
  public:
-  DiskWays(const Vehicle& vehicle, const Pose& start, const Pose& goal);
+  DiskPaths(const Vehicle& vehicle, const Pose& start, const Pose& goal);
 
   /// Return a length that the disk probably needs from a pose; infinite where it does not get to the goal.
   double length_from(const Pose& pose);
@@ -41,7 +41,7 @@ class DiskWays {
   std::int32_t start_, goal_;
   std::vector<Cell> cells_;
   std::vector<std::vector<std::int32_t>> buckets_;
-  std::int32_t cost_ = 0;  ///< Of the ways over the cells that are left next.
+  std::int32_t cost_ = 0;  ///< Of the paths over the cells that are left next.
   std::int64_t waiting_ = 0;
 };
 
