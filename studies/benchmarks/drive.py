@@ -96,7 +96,8 @@ def lengths(path: Path, count: int, seconds: float) -> None:
             best, seed, began = first.cost, 0, time.thread_time()
             while first.solved and time.thread_time() - began < seconds:
                 seed += 1
-                best = min(best, er.plan(world, start, goal, rng=seed).cost)
+                other = er.plan(world, start, goal, rng=seed)
+                best = min(best, other.cost) if other.solved else best
             ratios += [first.cost / best] if first.solved else []
         median, p95, most = np.percentile(ratios, (50, 95, 100))
         print(
