@@ -2,163 +2,206 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from bisect import bisect_left
+from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._time_limit import BudgetSpent, in_time, look_at_clock
+from evenroad.points.reversed_halton import cube_points
 from evenroad.roadmap.edges import EdgeCost
-from evenroad.roadmap.search import confirmed, shortest_path
+from evenroad.roadmap.search import confirmed
 from evenroad.space import Space
-from evenroad.space.path import motion_lengths, subdivide
+from evenroad.space.path import motion_lengths
 from evenroad.world import World
 
-Indices: TypeAlias = npt.NDArray[np.integer]
-SPREADS = (32, 96)
-"""Numbers of waypoints in a coarse and in a fine round; all pairs of them are checked.
-
-A coarse round needs a tenth of the motions and finds most of the gain."""
-MAX_ROUNDS = 8
+PAIRS = 32
+"""Number of even pairs of positions on the path that a batch joins, beside the corners that it cuts."""
+MAX_BATCHES = 32
 PATIENCE = 4
-"""Number of failed strict checks in a round after which neighbours one step further away are dropped, too."""
-WORTH_WHILE = 1e-2
-"""Least share of shortening in a round for another round with the same number of waypoints."""
+"""Number of batches without a gain after which the path counts as short."""
+WORTH_WHILE = 1e-3
+"""Least share of shortening that counts as a gain of a batch."""
+LEAST = 1e-4
+"""Least gain of a single cut, as a share of the cost of the path: motions for less are not checked."""
+SIZES = 4
+"""Corners are cut at their neighbours, then at a half, a quarter and an eighth of the way to them."""
+ROUNDING = 1e-9
+"""Share of a motion within which a position counts as its end."""
+ROUNDING_OF_COSTS = 1e-12
+_TINY = np.finfo(np.float64).tiny
 
 
 def shortcut(world: World, path: Floats, cost: EdgeCost | None = None) -> tuple[Floats, int]:
     """Return a path that does not cost more, with new motions that are free in the world.
 
-    Each round puts waypoints evenly along the path, few at first, joins every pair with a free motion between, and
-    takes the shortest path through them.  The path's own waypoints are always among them, so a round never makes it
-    longer.  At the end, unnecessary waypoints are dropped.  It draws no random numbers.  If the world has a strict
-    check (`ValidatesPaths`), the motions of a round's path must also pass it.  Motions that fail are removed, later
-    with their neighbours, and the next shortest path is tried.
+    Each batch joins positions on the path by straight motions: even pairs, drawn once for all, then positions on both
+    sides of each corner.  Of the free motions that do not overlap it takes those of the largest gain.  At the end,
+    unnecessary waypoints are dropped.  It draws no random numbers.  If the world has a strict check (`ValidatesPaths`),
+    each new motion of the path passes it, too.
 
     `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  When the time is over, the best path so
     far is the answer.  The second return value is the number of motions checked, without strict checks.
     """
     work = _Shortcut(path, world, world.space.distance if cost is None else cost)
     try:
-        for most in SPREADS:
-            for _ in range(MAX_ROUNDS):
-                before = work.length
-                work.round(most)
-                gain = before - work.length
-                if not gain > 0.0 or gain < WORTH_WHILE * work.length:
-                    break
+        work.shorten()
         work.drop_needless()
     except BudgetSpent:
         pass
     return work.path, work.checked
 
 
+@dataclass(frozen=True)
+class _Cuts:
+    """Motions that join two positions on a path.
+
+    A position is the number of a motion, (m,), and the `share` of it that lies before, (m,) in [0, 1].
+    """
+
+    first: Ints
+    first_share: Floats
+    last: Ints
+    last_share: Floats
+
+    def __getitem__(self, which: Ints | Bools | list[int]) -> _Cuts:
+        return _Cuts(self.first[which], self.first_share[which], self.last[which], self.last_share[which])
+
+    @property
+    def positions(self) -> tuple[Floats, Floats]:
+        """Where cuts begin and end, (m,) each: the number of the motion plus the share."""
+        return self.first + self.first_share, self.last + self.last_share
+
+
 class _Shortcut:
-    """A path that becomes shorter, and the number of checks for it."""
+    """A path that becomes shorter."""
 
     def __init__(self, path: Floats, world: World, cost: EdgeCost) -> None:
         self.path, self.world, self.cost = path, world, cost
         self.length = self._total(path)
         self.checked = 0
 
-    def round(self, most: int) -> None:
-        """Take the shortest path through this number of waypoints, if it is shorter."""
-        space = self.world.space
-        waypoints, own = _spread(self.path, space, most)
-        # The path's own motions are known to be free, so a path always exists.
-        pairs = _Pairs(self._free_pairs(waypoints), own)
-        lengths = self.cost(waypoints[pairs.edges[:, 0]], waypoints[pairs.edges[:, 1]])
-        goal = len(waypoints) - 1
-        to_goal = space.distance(waypoints, np.broadcast_to(waypoints[-1], waypoints.shape))
-        while True:
-            edges = pairs.edges[pairs.usable]
-            kept, _ = shortest_path(len(waypoints), edges, lengths[pairs.usable], to_goal, 0, goal)
-            shorter = self._total(waypoints[kept])
-            if not shorter < self.length:
-                return
-            if self._holds(waypoints, kept, pairs):
-                self.path, self.length = waypoints[kept], shorter
+    def shorten(self) -> None:
+        """Take cuts until they gain nothing more."""
+        idle = 0
+        for number in range(MAX_BATCHES):
+            before = self.length
+            corners = _corner_cuts(self.path, 0.5 ** (number % SIZES))
+            self._take(_together(corners, _even_cuts(self.path, self.world.space, number)), LEAST * before)
+            idle = 0 if before - self.length >= WORTH_WHILE * before else idle + 1
+            if idle == PATIENCE or len(self.path) == 2:
                 return
 
     def drop_needless(self) -> None:
-        """Join each waypoint to the last one that can be reached straight, and drop those between."""
-        path = self.path
-        pairs = _Pairs(self._free_pairs(path), np.arange(len(path)))
-        while True:
-            reach = np.arange(len(path))
-            first, second = pairs.edges[pairs.usable].T
-            np.maximum.at(reach, first, second)
-            kept = [0]
-            while kept[-1] < len(path) - 1:
-                kept.append(int(reach[kept[-1]]))
-            if self._holds(path, np.array(kept), pairs):
-                break
-        # This is never longer in a metric, but other costs may prefer the waypoint.
-        if self._total(path[kept]) <= self.length * (1.0 + 1e-12):
-            self.path = path[kept]
+        """Drop waypoints between neighbours that can be joined at no higher cost."""
+        before = 0
+        while len(self.path) != before:
+            before = len(self.path)
+            self._take(_corner_cuts(self.path, 1.0), -ROUNDING_OF_COSTS * self.length)
 
-    def _holds(self, waypoints: Floats, kept: Indices, pairs: _Pairs) -> bool:
-        """Return whether the world confirms a path; if not, some of its pairs become unusable."""
+    def _take(self, cuts: _Cuts, least: float) -> None:
+        """Take the best free cuts that gain more than `least`, if the path costs no more with them."""
+        starts, ends = self._at(cuts.first, cuts.first_share), self._at(cuts.last, cuts.last_share)
+        gains = self._cost_between(cuts, starts, ends) - self.cost(starts, ends)
+        worth = np.flatnonzero(gains > least)
+        free = worth[self._free(starts[worth], ends[worth])]
+        best = free[np.argsort(-gains[free], kind="stable")]
+        chosen = best[_apart(cuts[best])]
+        while len(chosen) and not (passed := self._confirmed(cuts[chosen], starts[chosen], ends[chosen])).all():
+            # Others that overlapped with these may pass.
+            best = best[~np.isin(best, chosen[~passed])]
+            chosen = best[_apart(cuts[best])]
+        if len(chosen):
+            _, path = self._with(cuts[chosen], starts[chosen], ends[chosen])
+            length = self._total(path)
+            if length <= self.length * (1.0 + ROUNDING_OF_COSTS):
+                self.path, self.length = path, length
+
+    def _confirmed(self, cuts: _Cuts, starts: Floats, ends: Floats) -> Bools:
+        """Return which of these cuts pass the strict check, with the parts of motions that they leave, (m,)."""
         look_at_clock()
-        along = pairs.along(kept)
-        passed = confirmed(self.world, waypoints[kept], ~pairs.trusted[along])
-        pairs.trusted[along[passed]] = True
-        if not passed.all():
-            pairs.give_up(along[~passed])
-        return bool(passed.all())
+        positions, path = self._with(cuts, starts, ends)
+        begins, finishes = cuts.positions
+        failed = np.zeros(len(path) - 1, dtype=np.bool_)
+        # A part of a motion is another motion, whose states are tested elsewhere.
+        (parts,) = np.nonzero(np.isin(positions[:-1], finishes) | np.isin(positions[1:], begins))
+        failed[parts] = ~self._free(path[parts], path[parts + 1])
+        if not failed.any():
+            # In one call, from the first cut to the last one.
+            uncertain = (positions[:-1] >= begins.min()) & (positions[1:] <= finishes.max())
+            uncertain[parts] = True
+            failed = ~confirmed(self.world, path, uncertain)
+        touched = np.concatenate([positions[:-1][failed], positions[1:][failed]])
+        return ~(np.isin(begins, touched) | np.isin(finishes, touched))
+
+    def _free(self, starts: Floats, ends: Floats) -> Bools:
+        """Return which motions are free, (m,)."""
+        free = np.zeros(len(starts), dtype=np.bool_)
+        for rows in in_time(np.arange(len(starts))):
+            free[rows] = self.world.motion_valid(starts[rows], ends[rows])
+            self.checked += len(rows)
+        return free
+
+    def _at(self, motions: Ints, shares: Floats) -> Floats:
+        """Return the states at positions, (m, dim)."""
+        return self.world.space.interpolate(self.path[motions], self.path[motions + 1], shares)
+
+    def _cost_between(self, cuts: _Cuts, starts: Floats, ends: Floats) -> Floats:
+        """Return what the path costs between the two positions of each cut, (m,)."""
+        before = np.concatenate([[0.0], np.cumsum(self.cost(self.path[:-1], self.path[1:]))])
+        whole = before[cuts.last] - before[cuts.first + 1]
+        return self.cost(starts, self.path[cuts.first + 1]) + whole + self.cost(self.path[cuts.last], ends)
+
+    def _with(self, cuts: _Cuts, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
+        """Return the positions and waypoints of the path with these cuts."""
+        own = np.arange(len(self.path), dtype=np.float64)
+        begins, finishes = cuts.positions
+        left = ~((own[:, np.newaxis] > begins) & (own[:, np.newaxis] < finishes)).any(axis=1)
+        states = np.concatenate([self.path[left], starts, ends])
+        # A cut that begins or ends at a waypoint has the same position: the waypoint comes first, and is kept.
+        positions, rows = np.unique(np.concatenate([own[left], begins, finishes]), return_index=True)
+        return positions, states[rows]
 
     def _total(self, path: Floats) -> float:
         return float(np.sum(self.cost(path[:-1], path[1:])))
 
-    def _free_pairs(self, waypoints: Floats) -> Bools:
-        """Return which pairs of waypoints i < j can be joined, (w, w)."""
-        first, second = np.triu_indices(len(waypoints), k=1)
-        free = np.zeros((len(waypoints), len(waypoints)), dtype=np.bool_)
-        for rows in in_time(np.arange(len(first))):
-            i, j = first[rows], second[rows]
-            free[i, j] = self.world.motion_valid(waypoints[i], waypoints[j])
-            self.checked += len(rows)
-        return free
+
+def _corner_cuts(path: Floats, share: float) -> _Cuts:
+    """Return cuts of all corners at a share of both motions there."""
+    first = np.arange(len(path) - 2)
+    return _Cuts(first, np.full(len(first), 1.0 - share), first + 1, np.full(len(first), share))
 
 
-class _Pairs:
-    """Pairs of waypoints that can be joined, which include the steps between a path's `own` ones.
-
-    `edges`, (m, 2), have the smaller row first.  `trusted` ones have passed the strict check, and `usable` ones have
-    not failed it, (m,) each.
-    """
-
-    def __init__(self, free: Bools, own: Indices) -> None:
-        free = free.copy()
-        free[own[:-1], own[1:]] = True
-        self.edges = np.argwhere(free).astype(np.int32)
-        self._number = np.zeros(free.shape, dtype=np.intp)
-        self._number[free] = np.arange(len(self.edges))
-        self.usable = np.ones(len(self.edges), dtype=np.bool_)
-        self.trusted = np.zeros(len(self.edges), dtype=np.bool_)
-        self.trusted[self._number[own[:-1], own[1:]]] = True
-        self._failures = 0
-
-    def along(self, kept: Indices) -> Indices:
-        """Return the numbers of the pairs along a path."""
-        return self._number[np.minimum(kept[:-1], kept[1:]), np.maximum(kept[:-1], kept[1:])]
-
-    def give_up(self, failed: Indices) -> None:
-        """Drop these pairs and unchecked neighbours, more of them the more pairs have failed.
-
-        An obstacle that blocks one motion mostly blocks its neighbours, too.  Singly, thousands would be tried.
-        """
-        for pair in self.edges[failed]:
-            beside = (np.abs(self.edges - pair) <= self._failures // PATIENCE).all(axis=1)
-            self.usable &= ~beside | self.trusted
-            self._failures += 1
-
-
-def _spread(path: Floats, space: Space, most: int) -> tuple[Floats, Ints]:
-    """Return the path's waypoints with evenly spread ones between them, `most` in all, and the rows of its own."""
+def _even_cuts(path: Floats, space: Space, number: int) -> _Cuts:
+    """Return the cuts of batch `number` between evenly spread positions of different motions."""
     lengths = motion_lengths(path, space)
-    spare = max(0, most - len(path))
-    total = lengths.sum()
-    extra = np.floor(spare * lengths / total).astype(int) if total > 0 else np.zeros(len(lengths), dtype=int)
-    return subdivide(path, space, extra + 1)
+    travelled = np.concatenate([[0.0], np.cumsum(lengths)])
+    at = np.sort(cube_points(2)[number * PAIRS : (number + 1) * PAIRS], axis=1) * travelled[-1]
+    motion = np.clip(np.searchsorted(travelled, at, side="right") - 1, 0, len(lengths) - 1)
+    share = (at - travelled[motion]) / np.maximum(lengths[motion], ROUNDING * travelled[-1] + _TINY)
+    share = np.where(share < ROUNDING, 0.0, np.where(share > 1.0 - ROUNDING, 1.0, share))
+    cuts = _Cuts(motion[:, 0], share[:, 0], motion[:, 1], share[:, 1])
+    return cuts[motion[:, 0] < motion[:, 1]]
+
+
+def _together(some: _Cuts, others: _Cuts) -> _Cuts:
+    return _Cuts(
+        np.concatenate([some.first, others.first]),
+        np.concatenate([some.first_share, others.first_share]),
+        np.concatenate([some.last, others.last]),
+        np.concatenate([some.last_share, others.last_share]),
+    )
+
+
+def _apart(cuts: _Cuts) -> list[int]:
+    """Return which cuts do not overlap an earlier one of these."""
+    taken: list[tuple[float, float]] = []
+    rows = []
+    begins, finishes = (each.tolist() for each in cuts.positions)
+    for row, cut in enumerate(zip(begins, finishes, strict=True)):
+        at = bisect_left(taken, cut)
+        if (at == 0 or taken[at - 1][1] <= cut[0]) and (at == len(taken) or cut[1] <= taken[at][0]):
+            taken.insert(at, cut)
+            rows.append(row)
+    return rows

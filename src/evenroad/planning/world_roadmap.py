@@ -130,7 +130,7 @@ class WorldRoadmap:
 
     def _connect(self, attempt: Attempt, states: EdgeStates, connector: Connector) -> PlanResult | None:
         """Return the result of a connector, or None if it finds nothing."""
-        if self._edge_cost is not None or shown_apart(attempt):
+        if self._edge_cost is not None or shown_apart(attempt) is not None:
             return None
         attempt.motions_checked += states.motions_checked
         connection = attempt.connect(connector)
