@@ -18,7 +18,7 @@ from evenroad._native import robot as native
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import Pose, Vector
 from evenroad.geometry.rotation import NO_ROTATION
-from evenroad.geometry.shapes import PRIMITIVES, Box, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
+from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
 
 MARGIN = 0.02
 """Default distance from the robot up to which points of a scan belong to it [m]."""
@@ -234,9 +234,11 @@ def smaller_rows(rows: Floats, by: float) -> tuple[Floats, Bools]:
     return small[left], left
 
 
-def boxes_of(rows: Floats, names: Sequence[str]) -> tuple[Obstacle, ...]:
-    """Return the boxes of rows, (n, 17), as obstacles of these names."""
+def obstacles_of_rows(rows: Floats, names: Sequence[str]) -> tuple[Obstacle, ...]:
+    """Return the boxes, spheres, cylinders and capsules of rows, (n, 17), as obstacles of these names."""
+    kinds = tuple(PRIMITIVES)
+    counts = [sum(count for _, count in PRIMITIVES[kind].dimensions) for kind in kinds]
     return tuple(
-        Obstacle.of(name, Box.kind, row[1:4], row[13:16], row[4:13])
+        Obstacle.of(name, kinds[int(row[0])], row[1 : 1 + counts[int(row[0])]], row[13:16], row[4:13])
         for name, row in zip(names, rows.tolist(), strict=True)
     )

@@ -13,7 +13,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
-from evenroad.scenes.obstacle import Obstacle, boxes_of
+from evenroad.scenes.obstacle import Obstacle, obstacles_of_rows
 
 MOST = 128
 """Number of changes from which on a sequence no longer refers to the one that it was changed from."""
@@ -108,8 +108,8 @@ class Obstacles(Sequence[Obstacle]):
         return repr(self.objects)
 
 
-class Boxes(Obstacles):
-    """Obstacles of rows, (n, 17), by their names: boxes of arrays, or rows for checks alone."""
+class Rows(Obstacles):
+    """Boxes, spheres, cylinders and capsules of rows, (n, 17), by their names."""
 
     def __init__(self, rows: Floats, names: tuple[str, ...]) -> None:
         rows.setflags(write=False)
@@ -117,8 +117,8 @@ class Boxes(Obstacles):
 
     @cached_property
     def objects(self) -> tuple[Obstacle, ...]:
-        """The boxes."""
-        return boxes_of(self.rows, self.names)
+        """The obstacles themselves, made when somebody looks."""
+        return obstacles_of_rows(self.rows, self.names)
 
     @property
     def surfaces(self) -> tuple[tuple[int, Obstacle], ...]:

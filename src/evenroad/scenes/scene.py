@@ -25,7 +25,7 @@ from evenroad.scenes.obstacle import Bodies, as_obstacles, box_rows, smaller_row
 from evenroad.scenes.obstacle import Cut as Cut
 from evenroad.scenes.obstacle import Obstacle as Obstacle
 from evenroad.scenes.obstacle import Seen as Seen
-from evenroad.scenes.obstacles import Boxes, Obstacles, named_twice
+from evenroad.scenes.obstacles import Obstacles, Rows, named_twice
 from evenroad.scenes.robot_setup import NO_SETUP, RobotSetup, Said
 
 
@@ -153,7 +153,7 @@ class Scene(Changes, metaclass=KnowsElsewhere):
             raise InvalidValue(f"names must be {len(rows)}, one a box, got {len(texts)}")
         if len(names):
             _require_different(name, texts)
-        return _scene(_NOTHING_ELSE, name=_named(name), obstacles=Boxes(rows, texts), allowed=allowed)
+        return _scene(_NOTHING_ELSE, name=_named(name), obstacles=Rows(rows, texts), allowed=allowed)
 
     @property
     def states(self) -> Mapping[str, Mapping[str, float]]:
@@ -354,7 +354,7 @@ def smaller_scene(scene: Scene, by: float) -> Scene:
     solid = [name for number, name in enumerate(scene.names) if number not in dict(scene.surfaces)]
     names = tuple(name for name, is_left in zip(solid, left.tolist(), strict=True) if is_left)
     allowed = frozenset(each for each in scene.allowed if each[1] in names)
-    return _scene(_NOTHING_ELSE, name=scene.name, obstacles=Boxes(rows, names), allowed=allowed)
+    return _scene(_NOTHING_ELSE, name=scene.name, obstacles=Rows(rows, names), allowed=allowed)
 
 
 def without_limits(scene: Scene) -> Scene:

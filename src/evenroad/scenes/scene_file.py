@@ -9,6 +9,7 @@ from pathlib import Path
 
 from evenroad._call import explains_calls
 from evenroad._checks import as_file, require_known
+from evenroad._native import robot as native
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.geometry.shapes import PRIMITIVES, PointCloud
@@ -16,7 +17,9 @@ from evenroad.loading.find import DATA
 from evenroad.robots.held import HeldObject
 from evenroad.scenes.entry import Entry
 from evenroad.scenes.moveit_scene import read_scene_text
+from evenroad.scenes.obstacles import Rows
 from evenroad.scenes.planning_scene import read_planning_scene
+from evenroad.scenes.robot_setup import Said
 from evenroad.scenes.scan import allowed_within
 from evenroad.scenes.scene import Obstacle, Scene
 from evenroad.scenes.scene_entries import POSE, obstacle_of, obstacles_of, region_of
@@ -133,6 +136,8 @@ def scene_of(document: Mapping[str, object], name: str) -> Scene:
 def _scene(document: Mapping[str, object], path: Path) -> Scene:
     require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
     root = Entry(document, str(path), path.parent)
+    if (rows := _primitives(document)) is not None:
+        return Scene(rows, name=str(document.get("name", path.stem)), **_states_and_limits(root))
     groups = {name: obstacles_of(name, entry) for name, entry in _obstacle_entries(root)}
     obstacles = tuple(each for group in groups.values() for each in group)
     groups |= {each.name: (each,) for each in obstacles}
@@ -146,17 +151,32 @@ def _scene(document: Mapping[str, object], path: Path) -> Scene:
         obstacles,
         name=str(document.get("name", path.stem)),
         allowed=frozenset(allowed),
-        states={
-            name: {joint: state.number(joint, what=f"joint {joint!r}") for joint in state.content}
-            for name, state in root.each("states", "state")
-        },
-        limits={
-            joint: _range(value, f"limits of joint {joint!r} in {path}")
-            for joint, value in root.inside(document.get("limits"), f"limits in {path}").content.items()
-        },
         attached=tuple(attached),
+        **_states_and_limits(root),
     )
     return _with_parts(scene, parts)
+
+
+def _primitives(document: Mapping[str, object]) -> Rows | None:
+    """Return the obstacles of a mapping that holds primitives and their poses alone, in a tenth of the time."""
+    entries = document["obstacles"]
+    if type(entries) is not dict or not document.keys().isdisjoint(("allowed", "attach")):
+        return None
+    rows = native.primitive_rows(entries)
+    return None if rows is None else Rows(rows, tuple(entries))
+
+
+def _states_and_limits(root: Entry) -> Said:
+    """Return the named configurations and the ranges to plan in."""
+    states = {
+        name: {joint: state.number(joint, what=f"joint {joint!r}") for joint in state.content}
+        for name, state in root.each("states", "state")
+    }
+    limits = {
+        joint: _range(value, f"limits of joint {joint!r} in {root.where}")
+        for joint, value in root.inside(root.get("limits"), f"limits in {root.where}").content.items()
+    }
+    return {"states": states, "limits": limits}
 
 
 def _obstacle_entries(root: Entry) -> Iterator[tuple[str, Entry]]:

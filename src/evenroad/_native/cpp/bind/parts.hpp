@@ -30,6 +30,7 @@ void add_points(nanobind::module_& module);
 void add_roadmap(nanobind::module_& module);
 void add_robot(nanobind::module_& module);
 void add_scene(nanobind::module_& robot);
+void add_scene_entries(nanobind::module_& robot);
 void add_space(nanobind::module_& module);
 void add_time_limit(nanobind::module_& module);
 void add_trajectory(nanobind::module_& module);

@@ -232,6 +232,7 @@ void add_robot(nb::module_& module) {
       .def("ball", &ball_of, nb::arg("body"))
       .def("contacts", &hull_contacts, nb::arg("first"), nb::arg("second"), nb::arg("poses"));
   add_scene(part);
+  add_scene_entries(part);
   nb::class_<Contact>(part, "Contact")
       .def_prop_ro("kind", [](const Contact& contact) { return CONTACTS.of(contact.with); })
       .def_ro("capsule", &Contact::capsule)
