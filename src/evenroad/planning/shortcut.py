@@ -151,7 +151,8 @@ class _Shortcut:
         """Return what the path costs between the two positions of each cut, (m,)."""
         before = np.concatenate([[0.0], np.cumsum(self.cost(self.path[:-1], self.path[1:]))])
         whole = before[cuts.last] - before[cuts.first + 1]
-        return self.cost(starts, self.path[cuts.first + 1]) + whole + self.cost(self.path[cuts.last], ends)
+        between: Floats = self.cost(starts, self.path[cuts.first + 1]) + whole + self.cost(self.path[cuts.last], ends)
+        return between
 
     def _with(self, cuts: _Cuts, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
         """Return the positions and waypoints of the path with these cuts."""

@@ -147,13 +147,8 @@ def _scene(document: Mapping[str, object], path: Path) -> Scene:
         held, touched = _attached(name, entry, groups)
         attached.append(held)
         allowed.update((name, each.name) for obstacle in touched for each in groups[obstacle])
-    scene = Scene(
-        obstacles,
-        name=str(document.get("name", path.stem)),
-        allowed=frozenset(allowed),
-        attached=tuple(attached),
-        **_states_and_limits(root),
-    )
+    said: Said = {**_states_and_limits(root), "attached": tuple(attached)}
+    scene = Scene(obstacles, name=str(document.get("name", path.stem)), allowed=frozenset(allowed), **said)
     return _with_parts(scene, parts)
 
 
