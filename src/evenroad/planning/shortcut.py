@@ -102,26 +102,26 @@ class _Shortcut:
 
     def _take(self, cuts: _Cuts, least: float) -> None:
         """Take the best free cuts that gain more than `least`, if the path costs no more with them."""
-        starts, ends = self._at(cuts.first, cuts.first_share), self._at(cuts.last, cuts.last_share)
-        gains = self._cost_between(cuts, starts, ends) - self.cost(starts, ends)
+        a, b = self._at(cuts.first, cuts.first_share), self._at(cuts.last, cuts.last_share)
+        gains = self._cost_between(cuts, a, b) - self.cost(a, b)
         worth = np.flatnonzero(gains > least)
-        free = worth[self._free(starts[worth], ends[worth])]
+        free = worth[self._free(a[worth], b[worth])]
         best = free[np.argsort(-gains[free], kind="stable")]
         chosen = best[_apart(cuts[best])]
-        while len(chosen) and not (passed := self._confirmed(cuts[chosen], starts[chosen], ends[chosen])).all():
+        while len(chosen) and not (passed := self._confirmed(cuts[chosen], a[chosen], b[chosen])).all():
             # Others that overlapped with these may pass.
             best = best[~np.isin(best, chosen[~passed])]
             chosen = best[_apart(cuts[best])]
         if len(chosen):
-            _, path = self._with(cuts[chosen], starts[chosen], ends[chosen])
+            _, path = self._with(cuts[chosen], a[chosen], b[chosen])
             length = self._total(path)
             if length <= self.length * (1.0 + ROUNDING_OF_COSTS):
                 self.path, self.length = path, length
 
-    def _confirmed(self, cuts: _Cuts, starts: Floats, ends: Floats) -> Bools:
+    def _confirmed(self, cuts: _Cuts, a: Floats, b: Floats) -> Bools:
         """Return which of these cuts pass the strict check, with the parts of motions that they leave, (m,)."""
         look_at_clock()
-        positions, path = self._with(cuts, starts, ends)
+        positions, path = self._with(cuts, a, b)
         begins, finishes = cuts.positions
         failed = np.zeros(len(path) - 1, dtype=np.bool_)
         # A part of a motion is another motion, whose states are tested elsewhere.
@@ -135,11 +135,11 @@ class _Shortcut:
         touched = np.concatenate([positions[:-1][failed], positions[1:][failed]])
         return ~(np.isin(begins, touched) | np.isin(finishes, touched))
 
-    def _free(self, starts: Floats, ends: Floats) -> Bools:
+    def _free(self, a: Floats, b: Floats) -> Bools:
         """Return which motions are free, (m,)."""
-        free = np.zeros(len(starts), dtype=np.bool_)
-        for rows in in_time(np.arange(len(starts))):
-            free[rows] = self.world.motion_valid(starts[rows], ends[rows])
+        free = np.zeros(len(a), dtype=np.bool_)
+        for rows in in_time(np.arange(len(a))):
+            free[rows] = self.world.motion_valid(a[rows], b[rows])
             self.checked += len(rows)
         return free
 
@@ -147,19 +147,19 @@ class _Shortcut:
         """Return the states at positions, (m, dim)."""
         return self.world.space.interpolate(self.path[motions], self.path[motions + 1], shares)
 
-    def _cost_between(self, cuts: _Cuts, starts: Floats, ends: Floats) -> Floats:
+    def _cost_between(self, cuts: _Cuts, a: Floats, b: Floats) -> Floats:
         """Return what the path costs between the two positions of each cut, (m,)."""
         before = np.concatenate([[0.0], np.cumsum(self.cost(self.path[:-1], self.path[1:]))])
         whole = before[cuts.last] - before[cuts.first + 1]
-        between: Floats = self.cost(starts, self.path[cuts.first + 1]) + whole + self.cost(self.path[cuts.last], ends)
+        between: Floats = self.cost(a, self.path[cuts.first + 1]) + whole + self.cost(self.path[cuts.last], b)
         return between
 
-    def _with(self, cuts: _Cuts, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
+    def _with(self, cuts: _Cuts, a: Floats, b: Floats) -> tuple[Floats, Floats]:
         """Return the positions and waypoints of the path with these cuts."""
         own = np.arange(len(self.path), dtype=np.float64)
         begins, finishes = cuts.positions
         left = ~((own[:, np.newaxis] > begins) & (own[:, np.newaxis] < finishes)).any(axis=1)
-        states = np.concatenate([self.path[left], starts, ends])
+        states = np.concatenate([self.path[left], a, b])
         # A cut that begins or ends at a waypoint has the same position: the waypoint comes first, and is kept.
         positions, rows = np.unique(np.concatenate([own[left], begins, finishes]), return_index=True)
         return positions, states[rows]
