@@ -35,7 +35,7 @@ STUDIES = ROOT / "studies" / "docs"
 """Pages of the studies, which become a section of the site."""
 
 REFERENCE = {
-    "planning": ("Planning", ("evenroad.planning", "evenroad.roadmap", "evenroad.io")),
+    "planning": ("Planning", ("evenroad.planning", "evenroad.roadmap", "evenroad.io", "evenroad._load")),
     "points": (
         "Point sets",
         (

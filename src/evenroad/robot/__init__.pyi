@@ -2,6 +2,7 @@ from evenroad.collision.arm_world import ArmWorld as ArmWorld
 from evenroad.geometry.shapes import Capsule as Capsule
 from evenroad.loading import find as find
 from evenroad.loading.find import find_robot as find_robot
+from evenroad.loading.find import list_robots as list_robots
 from evenroad.loading.load import load_model as load_model
 from evenroad.loading.load import load_robot as load_robot
 from evenroad.loading.model import LinkBody as LinkBody

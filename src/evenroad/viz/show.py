@@ -92,7 +92,7 @@ def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | Image.Ima
     if q is not None and not isinstance(what, ArmWorld | Robot):
         raise InvalidValue(f"q says where a robot stands, also in an er.ArmWorld, got q={shown(q)} with something else")
     notebook = _notebook()
-    moving = what if isinstance(what, PlanResult) else driven(what)
+    moving = what if isinstance(what, PlanResult) else _driven(what)
     if moving is not None and isinstance(moving.world, ArmWorld):
         return _served(moving, what, port, notebook)
     if moving is not None:
@@ -110,7 +110,7 @@ def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | Image.Ima
     return picture
 
 
-def driven(what: object) -> PlanResult | None:
+def _driven(what: object) -> PlanResult | None:
     """Return a trajectory as a plan in its world; None of what is no trajectory."""
     if not isinstance(what, Trajectory | CarTrajectory):
         return None
