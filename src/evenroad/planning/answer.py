@@ -146,6 +146,11 @@ def apart_in(problem: Problem, *, quickly: bool = False) -> Apart | None:
     world, given = problem.world, problem.given
     if not isinstance(world, ShowsApart):
         return None
+    if problem.regions:
+        # Imported late: few plans have regions. Their proof takes too long to be a quick one.
+        from evenroad.driving.region_goals import apart_from_regions
+
+        return None if quickly else apart_from_regions(world, problem.start, problem.regions)
     if given is None or not isinstance(world, ArmWorld):
         return world.apart(problem.start, problem.goals, quickly=quickly)
     # Imported late: few plans need the proof.

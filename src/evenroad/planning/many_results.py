@@ -42,6 +42,8 @@ class PlanResults:
         Wall time of each query [s].
     messages : mapping of int to str
         Row -> why there is no path, and what to try.
+    pieces : mapping of int to ndarray, shape (k, 2)
+        Row -> the pieces that a car drives, as :attr:`PlanResult.pieces`.
     worlds : tuple of World
         The different worlds.
     world_of : int64 ndarray, shape (m,)
@@ -63,6 +65,7 @@ class PlanResults:
     offsets: Ints
     seconds: Floats
     messages: Mapping[int, str] = field(default_factory=dict)
+    pieces: Mapping[int, Floats] = field(default_factory=dict)
     worlds: tuple[World, ...] = ()
     world_of: Ints
 
@@ -204,6 +207,7 @@ def joined(
         offsets=offsets,
         seconds=seconds,
         messages=why,
+        pieces={row: each.pieces for row, each in zip(rest.tolist(), results, strict=True) if each.pieces is not None},
         worlds=worlds,
         world_of=of,
     )

@@ -32,7 +32,7 @@ from evenroad.space.protocol import is_directed
 from evenroad.world import World
 
 if TYPE_CHECKING:
-    from evenroad.driving import PolygonMap
+    from evenroad.driving import GoalRegion, PolygonMap
     from evenroad.world import GridMap
 
 _PLAIN = Reading()
@@ -41,7 +41,7 @@ _PLAIN = Reading()
 def plan(
     world: World | GridMap | PolygonMap | Scene | PathLike,
     start: ConfigurationLike,
-    goal: Goal | Sequence[Goal],
+    goal: Goal | GoalRegion | Sequence[Goal | GoalRegion],
     planner: Planner | Roadmap | PointSet | str | os.PathLike[str] | None = None,
     *,
     seconds: float | None = None,
@@ -68,8 +68,8 @@ def plan(
         printed decimals, and is not changed.
     goal : as `start`, Pose, PoseGoal, or a sequence of such
         A pose stands for all configurations found that reach it.  A (4, 4) array is the matrix of a pose, unless the
-        arm has four joints.  With several goals the path ends at the nearest one if it is reached soon; along a
-        roadmap, or with ``improve``, at the cheapest.
+        arm has four joints.  For a car or a disk also a :class:`evenroad.driving.GoalRegion`.  With several goals the
+        path ends at the nearest one if it is reached soon; along a roadmap, or with ``improve``, at the cheapest.
     planner : Planner, Roadmap, PointSet, str or path-like, optional
         A planner, such as ``er.RRTConnect()``, ``er.PRM(512)`` or ``"fmt"``.  Default: trees for an arm, a search of
         cells for a disk on a map, a growing roadmap for any other world.  A PointSet stands for ``er.PRM(points)``;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import Protocol, TypedDict, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, TypedDict, runtime_checkable
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from evenroad.poses.constraint import Constraint
 from evenroad.poses.goals import Goals
 from evenroad.roadmap.budget import Budget
 from evenroad.world import World
+
+if TYPE_CHECKING:
+    from evenroad.driving.goal_region import GoalRegion
 
 _USUAL = Budget()
 
@@ -57,6 +60,8 @@ class Problem:
         Names and poses of an arm's goals, if these were given as more than configurations.
     model : RobotModel, optional
         The record of the arm's file.
+    regions : tuple of GoalRegion
+        Regions that some goals are poses of; a proof that there is no path is about all of their poses.
     """
 
     world: World
@@ -70,6 +75,7 @@ class Problem:
     constraints: Constraint | None = None
     given: Goals | None = None
     model: RobotModel | None = None
+    regions: tuple[GoalRegion, ...] = ()
 
     def __post_init__(self) -> None:
         require_smooth(self.smooth)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeGuard, Unpack
+from typing import TYPE_CHECKING, Any, TypeGuard, Unpack, cast
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from evenroad._arrays import Floats
 from evenroad._hints import keyword_hint
 from evenroad._time_limit import off_the_clock
 from evenroad.collision.arm_world import ArmWorld
+from evenroad.driving.goal_region import GoalRegion
 from evenroad.errors import InvalidValue, listed, near, shown
 from evenroad.geometry.pose import Pose
 from evenroad.loading.load import RobotOptions, load_model
@@ -51,7 +52,7 @@ OF_SCENE = ("robot", "clearance", "resolution", *RobotOptions.__annotations__)
 def read_problem(
     world: World | GridMap | PolygonMap | Scene | PathLike,
     start: ConfigurationLike,
-    goal: Goal | Sequence[Goal],
+    goal: Goal | GoalRegion | Sequence[Goal | GoalRegion],
     reading: Reading,
     wanted: Wanted = _ANY_PATH,
     **of_world: Any,
@@ -61,7 +62,7 @@ def read_problem(
         if "checker" not in vars(world):
             with off_the_clock():
                 _ = world.checker
-        return problem_in(world, start, goal, reading, wanted)
+        return problem_in(world, start, _of_arm(goal), reading, wanted)
     if isinstance(world, str | os.PathLike):
         # Names and suffixes of maps and scenes are the same, so the radius or the footprint decides.
         if "radius" in of_world or "footprint" in of_world:
@@ -86,7 +87,7 @@ def read_problem(
         _require_known(of_world, OF_SCENE, "a scene")
         if "robot" not in of_world:
             raise InvalidValue("a scene goes with robot=, the arm that moves in it: a name, a file or a Robot")
-        return arm_problem(of_world.pop("robot"), world, start, goal, reading, wanted, **of_world)
+        return arm_problem(of_world.pop("robot"), world, start, _of_arm(goal), reading, wanted, **of_world)
     if of_world:
         unknown = f"unknown keyword of plan in {shown(world)}: {next(iter(of_world))!r}"
         name = next(iter(of_world))
@@ -101,7 +102,28 @@ def read_problem(
             "world must be a World, a GridMap with radius=, or a Scene with robot=; or the name or file of one, got"
             f" {shown(world)}"
         )
+    given = list(goal) if isinstance(goal, Sequence) else [goal]
+    if any(isinstance(each, GoalRegion) for each in given):
+        return _into_regions(world, start, given, wanted)
     return Problem(world, *as_start_and_goals(start, goal, world.space), **wanted)
+
+
+def _of_arm(goal: Goal | GoalRegion | Sequence[Goal | GoalRegion]) -> Goal | Sequence[Goal]:
+    """Return the goal of an arm; InvalidValue for a region."""
+    given = goal if isinstance(goal, list | tuple) else [goal]
+    if any(isinstance(each, GoalRegion) for each in given):
+        raise InvalidValue("a goal region is of a car or a disk on a map, and none of an arm")
+    return cast("Goal | Sequence[Goal]", goal)
+
+
+def _into_regions(world: World, start: object, goals: Sequence[object], wanted: Wanted) -> Problem:
+    """Return the problem of going to one of several goals, of which some are regions of a map."""
+    # Imported late: few plans have regions.
+    from evenroad.driving.region_goals import as_regions, goals_in
+
+    regions = as_regions(goals, world)
+    first, poses = as_start_and_goals(start, np.concatenate([goals_in(world, each) for each in regions]), world.space)
+    return Problem(world, first, poses, regions=regions, **wanted)
 
 
 def is_world(world: object) -> TypeGuard[World]:

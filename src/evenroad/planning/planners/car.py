@@ -34,6 +34,8 @@ _BEFORE_PROOFS = (1, True), (4, False)
 _CELLS_A_ROUND, _MOST_ROUNDS = 15_000, 40
 """Number of cells of a map for which one more round comes before the full proof, which takes the longer the more there
 are; and the largest number of such rounds."""
+_FEW = 2
+"""Number of goals in a region that are searched for before that proof."""
 _SAME = 1e-7
 """Largest distance of the end of a path from its goal: rounding, in cells and radians."""
 
@@ -120,10 +122,14 @@ def _searched(attempt: Attempt, queries: Sequence[CarQuery], order: list[int]) -
     """Return which query found a path first, or the result that there is none."""
     world = attempt.world
     assert isinstance(world, CarWorld), "cars drive in their own world"
+    # Of a region there are many goals, and a proof about all of it is worth more than a search to each.
+    is_region = bool(attempt.problem.regions)
     for rounds, quickly in _BEFORE_PROOFS:
         more = 0 if quickly else min(world.grid.occupied.size // _CELLS_A_ROUND, _MOST_ROUNDS)
+        tried = order[:_FEW] if is_region and quickly else order
+        quickly = quickly and not is_region
         with attempt.watch("search"):
-            for number in order:
+            for number in tried:
                 if queries[number].search(rounds + more):
                     return number
         if (apart := shown_apart(attempt, quickly=quickly)) is not None:

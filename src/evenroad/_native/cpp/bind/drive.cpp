@@ -294,6 +294,36 @@ bool is_unreachable(const drive::Vehicle& vehicle, const drive::Steering& steeri
   });
 }
 
+/// The same of all poses that differ from one by at most `half`: in x, y and the angle.
+bool is_apart_from(const drive::Vehicle& vehicle, nb::handle start, nb::handle middle, nb::handle half,
+                   std::int64_t slices, std::int64_t most) {
+  const drive::Pose from = vehicle.to_cells(pose_of(start, "start")), to = vehicle.to_cells(pose_of(middle, "middle"));
+  const drive::Pose by = pose_of(half, "half"), turned = vehicle.to_cells({0.0, 0.0, 0.0});
+  require(by.x >= 0.0 && by.y >= 0.0 && by.angle >= 0.0, "half must be >= 0");
+  require(slices >= 3 && slices <= MOST_SLICES, "slices must be from 3 to 720");
+  require_budget(most, "most");
+  const double c = std::abs(std::cos(turned.angle)), s = std::abs(std::sin(turned.angle)), cell = vehicle.scale();
+  const drive::Around around{to, (c * by.x + s * by.y) / cell, (s * by.x + c * by.y) / cell, by.angle};
+  return without_gil([&] {
+    require(drive::Checks(vehicle).is_free(from), "the start must be free");
+    return drive::Slices(vehicle, slices).find(from, around, most) == drive::Apart::PROVED;
+  });
+}
+
+/// How much of the length of pieces is proved free, in map units.
+double free_length(const drive::Vehicle& vehicle, const drive::Steering& steering, nb::handle start, nb::handle pieces,
+                   double tolerance) {
+  const drive::Pose from = vehicle.to_cells(pose_of(start, "start"));
+  require(tolerance > 0.0, "tolerance must be > 0");
+  std::vector<drive::Piece> driven = pieces_of(pieces);
+  for (drive::Piece& piece : driven) piece.length /= vehicle.scale();
+  const double close = std::max(tolerance / vehicle.scale(), 1e-6);
+  return vehicle.scale() * without_gil([&] {
+           drive::Checks checks(vehicle);
+           return drive::free_length(checks, steering.in(vehicle.scale()), from, driven, close);
+         });
+}
+
 std::optional<drive::Contact> contact(const drive::Vehicle& vehicle, nb::handle q) {
   const drive::Pose pose = vehicle.to_cells(pose_of(q, "q"));
   return without_gil([&] {
@@ -442,6 +472,8 @@ void add_drive(nb::module_& module) {
       .def("gaps", &gaps, "q"_a.none())
       .def("are_apart", &are_apart, "start"_a.none(), "goal"_a.none(), "slices"_a, "most"_a)
       .def("is_unreachable", &is_unreachable, "steering"_a, "start"_a.none(), "goal"_a.none(), "most"_a)
+      .def("is_apart_from", &is_apart_from, "start"_a.none(), "middle"_a.none(), "half"_a.none(), "slices"_a, "most"_a)
+      .def("free_length", &free_length, "steering"_a, "start"_a.none(), "pieces"_a.none(), "tolerance"_a)
       .def("contact", &contact, "q"_a.none())
       .def("side_contact", &side_contact, "q"_a.none());
   nb::class_<drive::CarQuery>(part, "CarQuery", "A search for the path of a car between two free poses.")

@@ -8,6 +8,8 @@ namespace {
 
 /// A shorter piece is none, as far as a change of direction is concerned [radians of a turn].
 constexpr double NO_LENGTH = 1e-9;
+/// Number of halves after which rounding is left of a length.
+constexpr int MOST_HALVES = 60;
 
 }  // namespace
 
@@ -58,6 +60,28 @@ bool are_free(Checks& checks, const Steering& steering, const Pose& from, std::s
     at = motion.at(1.0);
   }
   return true;
+}
+
+double free_length(Checks& checks, const Steering& steering, const Pose& from, std::span<const Piece> pieces,
+                   double tolerance) {
+  if (!checks.is_free(from)) return 0.0;
+  Pose at = from;
+  double driven = 0.0;
+  for (const Piece& piece : pieces) {
+    const Motion motion = steering.motion(at, piece);
+    if (!checks.is_free(motion)) {
+      // What is free of a piece is found by halves: each is proved as a motion of its own.
+      double low = 0.0, high = std::abs(piece.length);
+      for (int k = 0; k < MOST_HALVES && high - low > tolerance; k++) {
+        const double middle = 0.5 * (low + high);
+        const Piece part{piece.side, std::copysign(middle, piece.length)};
+        (checks.is_free(steering.motion(at, part)) ? low : high) = middle;
+      }
+      return driven + low;
+    }
+    driven += std::abs(piece.length), at = motion.at(1.0);
+  }
+  return driven;
 }
 
 }  // namespace evenroad::drive

@@ -58,4 +58,9 @@ Pose pose_after(const Steering& steering, Pose from, std::span<const Piece> piec
 /// Say whether all poses along pieces are free, of which the first is.
 bool are_free(Checks& checks, const Steering& steering, const Pose& from, std::span<const Piece> pieces);
 
+/// Return how much of the length of pieces is proved free from their begin on, at most `tolerance` less than is free;
+/// 0 where the first pose is not.
+double free_length(Checks& checks, const Steering& steering, const Pose& from, std::span<const Piece> pieces,
+                   double tolerance);
+
 }  // namespace evenroad::drive

@@ -16,6 +16,9 @@ constexpr int DIRECTIONS = 4;
 constexpr double SMALLER = 1e-9;
 /// Largest number of boxes that are kept in mind.
 constexpr std::int64_t MOST_BOXES = 100'000'000;
+/// Whom a box was seen by, or that it is shut.
+enum Seen : std::uint8_t { NOBODY, FROM_START, FROM_GOAL, CLOSED };
+
 /// Keep what of a convex polygon lies on one side of a line: where dot(out, point) <= offset.
 std::vector<Vec> cut_off(const std::vector<Vec>& polygon, Vec out, double offset) {
   std::vector<Vec> kept;
@@ -153,13 +156,25 @@ void Slices::shut_by(std::int64_t row, std::vector<std::uint64_t>& shut) const {
   }
 }
 
+/// Visit a box and those beside it until `visit` returns true.
+template <class Visit>
+void Slices::each_beside(const Box& box, const Visit& visit) const {
+  for (std::int64_t slice = box.slice - 1; slice <= box.slice + 1; slice++) {
+    for (std::int64_t row = std::max<std::int64_t>(box.row - 1, 0); row <= std::min(box.row + 1, rows_ - 1); row++) {
+      for (std::int64_t column = std::max<std::int64_t>(box.column - 1, 0);
+           column <= std::min(box.column + 1, columns_ - 1); column++) {
+        if (visit(Box{(slice + count_) % count_, row, column})) return;
+      }
+    }
+  }
+}
+
 Apart Slices::find(const Pose& start, const Pose& goal, std::int64_t most) {
   if (count_ * rows_ * columns_ > MOST_BOXES) return Apart::UNKNOWN;
   struct Side {
     std::vector<Box> boxes;
     std::size_t next = 0;
   };
-  enum Seen : std::uint8_t { NOBODY, FROM_START, FROM_GOAL, SHUT };
   std::array<Side, 2> sides{Side{{box_of(start)}}, Side{{box_of(goal)}}};
   std::vector<std::uint8_t> seen(count_ * rows_ * columns_, NOBODY);
   if (number_of(sides[0].boxes[0]) == number_of(sides[1].boxes[0])) return Apart::JOINED;
@@ -170,24 +185,47 @@ Apart Slices::find(const Pose& start, const Pose& goal, std::int64_t most) {
     Side& own = sides[side];
     if (own.next == own.boxes.size()) return Apart::PROVED;
     clock.look();
-    const Box box = own.boxes[own.next++];
-    for (std::int64_t slice = box.slice - 1; slice <= box.slice + 1; slice++) {
-      for (std::int64_t row = std::max<std::int64_t>(box.row - 1, 0); row <= std::min(box.row + 1, rows_ - 1); row++) {
-        for (std::int64_t column = std::max<std::int64_t>(box.column - 1, 0);
-             column <= std::min(box.column + 1, columns_ - 1); column++) {
-          const Box next{(slice + count_) % count_, row, column};
-          std::uint8_t& by = seen[number_of(next)];
-          if (by == FROM_GOAL - side) return Apart::JOINED;
-          if (by != NOBODY) continue;
-          if (!is_open(next)) {
-            by = SHUT;
-            continue;
-          }
-          by = static_cast<std::uint8_t>(FROM_START + side);
-          own.boxes.push_back(next);
-        }
-      }
-    }
+    bool is_joined = false;
+    each_beside(Box(own.boxes[own.next++]), [&](const Box& next) {
+      std::uint8_t& by = seen[number_of(next)];
+      is_joined = by == FROM_GOAL - side;
+      if (by != NOBODY) return is_joined;
+      by = is_open(next) ? static_cast<std::uint8_t>(FROM_START + side) : CLOSED;
+      if (by != CLOSED) own.boxes.push_back(next);
+      return false;
+    });
+    if (is_joined) return Apart::JOINED;
+  }
+  return Apart::UNKNOWN;
+}
+
+/// Say whether a pose of a box may be one of some poses.
+bool Slices::is_in(const Box& box, const Around& goals) const {
+  const double off = norm(centre_), width = 2.0 * PI / static_cast<double>(count_);
+  const Vec middle{static_cast<double>(box.column) + 0.5, static_cast<double>(box.row) + 0.5};
+  const double turned = wrapped((static_cast<double>(box.slice) + 0.5) * width - goals.middle.angle);
+  return std::abs(middle.x - goals.middle.x) <= goals.x + off + 0.5 + SMALLER &&
+         std::abs(middle.y - goals.middle.y) <= goals.y + off + 0.5 + SMALLER &&
+         std::abs(turned) <= goals.angle + 0.5 * width + SMALLER;
+}
+
+Apart Slices::find(const Pose& start, const Around& goals, std::int64_t most) {
+  if (count_ * rows_ * columns_ > MOST_BOXES) return Apart::UNKNOWN;
+  std::vector<Box> boxes{box_of(start)};
+  std::vector<std::uint8_t> seen(count_ * rows_ * columns_, NOBODY);
+  seen[number_of(boxes[0])] = FROM_START;
+  ClockWatch clock(1024);
+  for (std::int64_t gone = 0; gone < most; gone++) {
+    if (gone == static_cast<std::int64_t>(boxes.size())) return Apart::PROVED;
+    clock.look();
+    if (is_in(boxes[gone], goals)) return Apart::JOINED;
+    each_beside(Box(boxes[gone]), [&](const Box& next) {
+      std::uint8_t& by = seen[number_of(next)];
+      if (by != NOBODY) return false;
+      by = is_open(next) ? FROM_START : CLOSED;
+      if (by != CLOSED) boxes.push_back(next);
+      return false;
+    });
   }
   return Apart::UNKNOWN;
 }

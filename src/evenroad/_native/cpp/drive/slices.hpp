@@ -15,6 +15,12 @@ namespace evenroad::drive {
 /// What a proof says: no path leads from one pose to the other; open boxes do; or there were too many boxes to know.
 enum class Apart : std::uint8_t { PROVED, JOINED, UNKNOWN };
 
+/// Poses whose reference point and angle differ from those of one by at most so much, along columns, rows and turns.
+struct Around {
+  Pose middle;
+  double x, y, angle;
+};
+
 class Slices {
  public:
   /// Divide the angle into that many slices; what is known of them is found when it is needed.
@@ -24,6 +30,8 @@ class Slices {
 
   /// Say whether two free poses are apart; at most that many boxes are gone to.
   Apart find(const Pose& start, const Pose& goal, std::int64_t most);
+  /// Say whether a free pose is apart from all of these.
+  Apart find(const Pose& start, const Around& goals, std::int64_t most);
 
  private:
   friend class ForwardReach;
@@ -33,6 +41,9 @@ class Slices {
 
   std::int64_t number_of(const Box& box) const { return (box.slice * rows_ + box.row) * columns_ + box.column; }
   Box box_of(const Pose& pose) const;
+  template <class Visit>
+  void each_beside(const Box& box, const Visit& visit) const;
+  bool is_in(const Box& box, const Around& goals) const;
   bool is_open(const Box& box);
   bool meets_polygons(const Box& box);
   void shut(std::int64_t slice);
