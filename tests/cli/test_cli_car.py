@@ -132,3 +132,21 @@ def test_the_plan_of_a_car_is_viewed_on_its_map_and_a_damaged_one_refused(run, t
     code, _, err = run("view", "office.json", "--html", "page.html")
     assert (code, len(err.strip().splitlines())) == (2, 1)
     assert "footprint" in err
+
+
+@pytest.mark.usefixtures("in_an_empty_folder")
+@pytest.mark.parametrize("robot", [("--robot-radius", "0.2"), ("--footprint", BOX, "--turning-radius", "0.6")])
+def test_a_clearance_that_is_preferred_makes_the_path_longer_and_is_recorded(run, robot):
+    import evenroad as er
+
+    pose = ("90",) if "--footprint" in robot else ()
+    words = ("plan", "office.yaml", *robot, "--start", "1", "2", *pose, "--goal", "8.5", "3", *("0",) * len(pose))
+    words = (*words, "--no-picture", *(("--deg",) if pose else ()))
+    costs = []
+    for more in ((), ("--prefer-clearance", "0.3")):
+        code, out, err = run(*words, *more)
+        assert (code, err) == (0, ""), out
+        result, query = er.io.load_plan("office.json")
+        costs.append(result.cost)
+    assert query["prefer_clearance"] == 0.3
+    assert costs[0] < costs[1]

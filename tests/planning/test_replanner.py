@@ -200,7 +200,7 @@ def test_an_update_with_the_wrong_thing_says_what_it_may_be_and_nothing_has_chan
 
 def test_only_an_arm_is_planned_for_and_its_goal_is_read_at_once():
     with pytest.raises(InvalidValue, match="world must be an ArmWorld"):
-        er.Replanner(er.GridMap(np.zeros((9, 9), dtype=bool)).world(1), (1, 1))
+        er.Replanner(er.GridMap(np.zeros((9, 9), dtype=bool)), (1, 1))
     with pytest.raises(UnknownName, match="nowhere"):
         er.Replanner(world_of(), "nowhere")
     with pytest.raises(InvalidValue, match="motions"):

@@ -34,7 +34,8 @@ class PlanOptions(SamplerOptions):
         "from where to where": (
             *("help", "world", "robot_radius", "robot", "roadmap", "start", "goal", "goal_pose"),
             *("footprint", "turning_radius", "forward_only", "holonomic", "cusp_cost"),
-            *("tip", "frame", "free_axis", "tolerance", "deg", "clearance", "unknown_is_free", "rules"),
+            *("tip", "frame", "free_axis", "tolerance", "deg"),
+            *("clearance", "prefer_clearance", "unknown_is_free", "rules"),
         ),
         "on the way": ("via", "straight", "away", "upright", "upright_axis", "constraint"),
         "search": ("time", "improve", "certified", "resolution", "seed", "raw"),
@@ -117,6 +118,8 @@ class PlanDisk(PlanOptions, MapTimes):
     """Plan for a disk of this radius, > 0, in map units."""
     clearance: float = 0.0
     """Distance to keep from every obstacle, beside the radius, >= 0, in map units."""
+    prefer_clearance: float = 0.0
+    """Distance to keep from obstacles where there is room, >= 0, in map units; a length at one counts three times."""
     unknown_is_free: bool = False
     """Treat unknown cells of a ROS map as free."""
     rules: str | None = None
@@ -162,6 +165,8 @@ class PlanCar(PlanOptions, CarTimes):
     """Read the angles of start and goal in degrees."""
     clearance: float = 0.0
     """Distance to keep from every obstacle, >= 0, in map units; at corners of the footprint up to 2 % more."""
+    prefer_clearance: float = 0.0
+    """Distance to keep from obstacles where there is room, >= 0, in map units; a length at one counts three times."""
     unknown_is_free: bool = False
     """Treat unknown cells of a ROS map as free."""
     rules: str | None = None

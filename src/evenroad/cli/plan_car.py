@@ -48,15 +48,22 @@ def plan_car(plan: PlanCar) -> int:
     planner: Planner = default_planner(world)
     if plan.cusp_cost is not None:
         planner = CarSearch(cusp_cost=plan.cusp_cost)
-    wanted = Wanted(budget=how.budget, smooth=not plan.raw, certified=plan.certified, rng=plan.seed)
+    wanted = Wanted(
+        budget=how.budget,
+        smooth=not plan.raw,
+        certified=plan.certified,
+        rng=plan.seed,
+        prefer_clearance=plan.prefer_clearance,
+    )
     with within(how.budget.seconds):
         problem = read_problem(world, start, goals, Reading(), wanted)
         result, stopped = solve_until_stopped(problem, planner)
-    of_car = ("turning_radius", "forward_only", "holonomic", "cusp_cost", "clearance", "unknown_is_free", "rules")
+    of_car = ("turning_radius", "forward_only", "holonomic", "cusp_cost", "unknown_is_free", "rules")
+    kept = ("clearance", "prefer_clearance")
     query = {
         "map": str(plan.world),
         "footprint": [outline.tolist() for outline in world.footprint.outlines],
-        **{name: getattr(plan, name) for name in of_car},
+        **{name: getattr(plan, name) for name in (*of_car, *kept)},
         **common_query(plan, how),
     }
 

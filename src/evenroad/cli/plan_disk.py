@@ -53,7 +53,12 @@ def plan_disk(plan: PlanDisk) -> int:
         gridmap = gridmap.cropped()
     world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
     planner = chosen_planner(plan, how, world, search="full", certify=plan.guarantees)
-    wanted = Wanted(budget=how.budget, smooth=not plan.raw, certified=plan.certified)
+    wanted = Wanted(
+        budget=how.budget,
+        smooth=not plan.raw,
+        certified=plan.certified,
+        prefer_clearance=plan.prefer_clearance,
+    )
     with within(how.budget.seconds):
         problem = read_problem(world, start, goals, Reading(), wanted)
         result, stopped = solve_until_stopped(problem, planner)
@@ -61,6 +66,7 @@ def plan_disk(plan: PlanDisk) -> int:
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,
         "clearance": plan.clearance,
+        "prefer_clearance": plan.prefer_clearance,
         "unknown_is_free": plan.unknown_is_free,
         "rules": plan.rules,
         **common_query(plan, how),

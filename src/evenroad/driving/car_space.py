@@ -145,6 +145,12 @@ def as_pieces(rows: Floats, space: CarSpace) -> Floats:
     return np.column_stack([curvature, length / np.where(on_the_spot, space.spot, 1.0)])
 
 
+def rows_of(pieces: Floats, space: CarSpace) -> Floats:
+    """Return the sides and lengths, (k, 2), that compiled code has, of curvatures and signed lengths."""
+    on_the_spot = np.isinf(pieces[:, 0])
+    return np.column_stack([np.sign(pieces[:, 0]), np.where(on_the_spot, space.spot * pieces[:, 1], pieces[:, 1])])
+
+
 def cusps_of(pieces: Floats) -> int:
     """Return how often pieces, (k, 2), change between forwards and backwards; turns on the spot do not count."""
     signs = np.sign(pieces[np.isfinite(pieces[:, 0]), 1])

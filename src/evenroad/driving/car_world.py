@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -130,6 +130,36 @@ class CarWorld(OneOrMany):
         if isinstance(self.space, CarSpace):
             return self.vehicle.curves_free(self.space.steering, first, second)
         return self.vehicle.lines_free(first, second)
+
+    def with_cells(self, occupied: Bools) -> CarWorld:
+        """Return the world of the same car on a map whose cells have changed.
+
+        Parameters
+        ----------
+        occupied : array_like of bool
+            Of the shape of the map; unknown cells are no longer distinguished.
+
+        Returns
+        -------
+        CarWorld
+
+        Raises
+        ------
+        InvalidValue
+            If it has another shape, or the obstacles are polygons.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> grid = er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
+        >>> car = grid.world(footprint=[(-0.3, -0.2), (0.3, -0.2), (0.3, 0.2), (-0.3, 0.2)])
+        >>> car.with_cells(np.ones((20, 30), dtype=bool)).valid((1, 1, 0))
+        False
+        """
+        if self.polygons is not None:
+            raise InvalidValue("polygons have no cells that change: make the world of another PolygonMap")
+        return replace(self, grid=self.grid.with_cells(occupied))
 
     def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, 3), are free: (p - 1,)."""

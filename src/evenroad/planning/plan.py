@@ -50,6 +50,7 @@ def plan(
     rng: RngLike = 0,
     certified: bool = False,
     constraints: Constraint | None = None,
+    prefer_clearance: float = 0.0,
     degrees: bool = False,
     tip: str = "",
     frame: str = "",
@@ -91,6 +92,9 @@ def plan(
     constraints : Constraint, optional
         Constraints of an arm, such as ``er.CartesianLine(0.1)`` or ``er.constraints.KeepUpright(0.1)``;
         ``one & other`` means both.
+    prefer_clearance : float
+        Distance from obstacles, >= 0, that the path of a disk or a car keeps where there is room for it, in map units.
+        A length at an obstacle counts three times one with all of this clearance.  ``clearance=`` is always kept.
     degrees : bool
         Angles in texts are degrees.
     tip, frame : str
@@ -126,6 +130,7 @@ def plan(
         "rng": rng,
         "certified": certified,
         "constraints": constraints,
+        "prefer_clearance": prefer_clearance,
     }
     with within(budget.seconds):
         problem = read_problem(world, start, goal, reading, wanted, **of_world)
@@ -144,10 +149,17 @@ def solve(problem: Problem, planner: Planner | Roadmap | None = None) -> PlanRes
             found, stopped = stop.best, True
         return found if found.solved else with_reasons(part.world, found)
 
+    if problem.prefer_clearance > 0.0:
+        # Imported late: it is of disks and cars alone.
+        from evenroad.planning.preferred_clearance import require_preferring, with_preferred_clearance
+
+        require_preferring(problem)
     try:
         by = None if planner is None else _within(planner, problem.world)
         if (found := unreached(problem)) is None and problem.constraints is None:
             found = plan_once(problem)
+            if problem.prefer_clearance > 0.0 and found.solved:
+                found = with_preferred_clearance(problem, found)
         elif found is None:
             # Imported late: most plans have no constraints.
             from evenroad.planning.tip_motion import plan_constrained

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol, TypedDict, runtime_checkable
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._checks import require_positive
 from evenroad._rng import RngLike
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.loading.model import RobotModel
@@ -34,6 +35,7 @@ class Wanted(TypedDict, total=False):
     rng: RngLike
     certified: bool
     constraints: Constraint | None
+    prefer_clearance: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +64,8 @@ class Problem:
         The record of the arm's file.
     regions : tuple of GoalRegion
         Regions that some goals are poses of; a proof that there is no path is about all of their poses.
+    prefer_clearance : float
+        Distance from obstacles that a path of a disk or a car keeps where there is room for it, in map units.
     """
 
     world: World
@@ -76,9 +80,11 @@ class Problem:
     given: Goals | None = None
     model: RobotModel | None = None
     regions: tuple[GoalRegion, ...] = ()
+    prefer_clearance: float = 0.0
 
     def __post_init__(self) -> None:
         require_smooth(self.smooth)
+        require_positive("prefer_clearance", self.prefer_clearance, or_zero=True)
         self.start.setflags(write=False)
         self.goals.setflags(write=False)
 

@@ -62,7 +62,7 @@ def read_problem(
         if "checker" not in vars(world):
             with off_the_clock():
                 _ = world.checker
-        return problem_in(world, start, _of_arm(goal), reading, wanted)
+        return problem_in(world, start, goal_of_arm(goal), reading, wanted)
     if isinstance(world, str | os.PathLike):
         # Names and suffixes of maps and scenes are the same, so the radius or the footprint decides.
         if "radius" in of_world or "footprint" in of_world:
@@ -87,7 +87,7 @@ def read_problem(
         _require_known(of_world, OF_SCENE, "a scene")
         if "robot" not in of_world:
             raise InvalidValue("a scene goes with robot=, the arm that moves in it: a name, a file or a Robot")
-        return arm_problem(of_world.pop("robot"), world, start, _of_arm(goal), reading, wanted, **of_world)
+        return arm_problem(of_world.pop("robot"), world, start, goal_of_arm(goal), reading, wanted, **of_world)
     if of_world:
         unknown = f"unknown keyword of plan in {shown(world)}: {next(iter(of_world))!r}"
         name = next(iter(of_world))
@@ -108,7 +108,7 @@ def read_problem(
     return Problem(world, *as_start_and_goals(start, goal, world.space), **wanted)
 
 
-def _of_arm(goal: Goal | GoalRegion | Sequence[Goal | GoalRegion]) -> Goal | Sequence[Goal]:
+def goal_of_arm(goal: Goal | GoalRegion | Sequence[Goal | GoalRegion]) -> Goal | Sequence[Goal]:
     """Return the goal of an arm; InvalidValue for a region."""
     given = goal if isinstance(goal, list | tuple) else [goal]
     if any(isinstance(each, GoalRegion) for each in given):

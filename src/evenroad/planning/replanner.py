@@ -1,77 +1,69 @@
-"""Replanner: paths to one goal that are updated as the arm and the obstacles move."""
+"""Replanner: paths to one goal that are updated as the robot and the obstacles move."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from time import perf_counter as now
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
-from evenroad._checks import counted, require_count
-from evenroad._native.planning import Drivers, Points, answer, shorten
-from evenroad._rng import RngLike, variant_of
-from evenroad._shared import OwnLock, once
-from evenroad.collision.arm_world import VALIDATION_TOLERANCE, ArmWorld
-from evenroad.errors import InvalidValue, shown
+from evenroad._checks import require_count
+from evenroad._rng import RngLike
+from evenroad._shared import OwnLock
+from evenroad.collision.arm_world import ArmWorld
+from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
-from evenroad.planning.arm_trees import checks_of
-from evenroad.planning.attempt import Attempt
-from evenroad.planning.connectors import drivers_of
-from evenroad.planning.make_result import make_result, solution, unreached
-from evenroad.planning.problem import Problem
-from evenroad.planning.read_problem import problem_in, reaching
+from evenroad.planning.arm_updates import ArmUpdates
+from evenroad.planning.read_problem import goal_of_arm
 from evenroad.planning.reading import Goal, Reading
-from evenroad.planning.refusal import refusal
-from evenroad.planning.result import PlanResult, Status
-from evenroad.points.reversed_halton import PAIRS, share_pairs
+from evenroad.planning.result import PlanResult
 from evenroad.robots.robot import ConfigurationLike
 from evenroad.scenes.obstacle import Bodies
 from evenroad.scenes.scene import Scene
-from evenroad.scenes.states import as_configuration
 
-VARIANTS = 8
-"""Number of even sequences that updates without a path use in turn."""
-SHORTCUTS = 8
-"""Number of pairs of positions along a path that each update tries to join; the next update tries others."""
+if TYPE_CHECKING:
+    from evenroad.driving import CarWorld, GoalRegion
+    from evenroad.planning.map_updates import Ahead, ChangedMap, MapUpdates
+    from evenroad.world.gridmap import DiskWorld
 
 
 @explains_calls
 class Replanner:
-    """A path of an arm to its goal that is kept while it is free, and planned again when it is not.
+    """A path of an arm, a car or a disk to its goal that is kept while it is free, and planned again when it is not.
 
     An update takes the arm's configuration and the changes of the scene.  It proves the rest of the last path free in
     the current scene, and shortens it where possible.  If the rest is not free, it plans a new path from the arm's
     configuration.  So every returned path is free in the current scene.
 
+    For a car or a disk the scene is a map: an update takes where the robot is, and its current cells.
+
     Parameters
     ----------
-    world : ArmWorld
-        The arm and its scene at the beginning.
+    world : ArmWorld, CarWorld or DiskWorld
+        The robot and its scene or map at the beginning.
     goal : as of :func:`evenroad.plan`
         A configuration, a named state, a pose, or several of them.  A pose stands for all postures that are free in the
         scene of the update.
     motions : int
-        Largest number of motions that trees check in one update, >= 1.  If no path is found, the next update grows
-        other trees.
+        Of an arm: largest number of motions that trees check in one update, >= 1.  If no path is found, the next update
+        grows other trees.
     rng : int, SeedSequence or Generator
         Seed of the sequences that drive the trees.
     tip, frame : str
-        The link that goal poses refer to, and the link whose frame they are in; default: the last link, and the root.
+        Of an arm: the link that goal poses refer to, and the link whose frame they are in; default: the last link, and
+        the root.
 
     Attributes
     ----------
-    world : ArmWorld
-        The arm and its scene at the last update.
+    world : ArmWorld, CarWorld or DiskWorld
+        The robot and its scene or map at the last update.
     path : ndarray, shape (p, dim), or None
         The path of the last update.
 
     Raises
     ------
     InvalidValue, UnknownName
-        If the world is not that of an arm, or the goal is not one of these.
+        If the world is another one, or the goal is not one of these.
 
     Notes
     -----
@@ -85,54 +77,76 @@ class Replanner:
     'trees'
     >>> live.update("home", moved={"box top": er.Pose((0.6, 0, 0.9))}).planner
     'kept'
+
+    A car whose map has changed:
+
+    >>> import numpy as np
+    >>> grid = er.GridMap(np.zeros((60, 90), dtype=bool), resolution=0.1)
+    >>> car = grid.world(footprint=[(-0.3, -0.2), (0.3, -0.2), (0.3, 0.2), (-0.3, 0.2)], turning_radius=0.5)
+    >>> driving = er.Replanner(car, (8, 3, 0))
+    >>> driving.update((1, 3, 0)).pieces.tolist()
+    [[0.0, 7.0]]
+    >>> cells = np.zeros((60, 90), dtype=bool)
+    >>> cells[20:40, 50] = True
+    >>> driving.ahead((1.5, 3, 0), cells)
+    Ahead(free_until=3.19921875, length=6.5)
+    >>> driving.update((1.5, 3, 0), cells).planner
+    'curves'
     """
 
     def __init__(
         self,
-        world: ArmWorld,
-        goal: Goal | Sequence[Goal],
+        world: ArmWorld | CarWorld | DiskWorld,
+        goal: Goal | GoalRegion | Sequence[Goal | GoalRegion],
         *,
         motions: int = 600,
         rng: RngLike = 0,
         tip: str = "",
         frame: str = "",
     ) -> None:
-        if not isinstance(world, ArmWorld):
-            raise InvalidValue(f"world must be an ArmWorld, as er.ArmWorld(robot, scene), got {shown(world)}")
-        self.world: ArmWorld = world
-        self.path: Floats | None = None
-        self._motions = require_count("motions", motions)
-        middle = world.space.from_cube(np.full((1, world.dim), 0.5))[0]
-        # Read in an empty scene, because a posture that is blocked now may be free at a later update.
-        empty = replace(world.scene, obstacles=(), allowed=frozenset())
-        self._problem = problem_in(world.within(empty), middle, goal, Reading(tip=tip, frame=frame))
-        variant = variant_of(rng)
-        self._variant, self._drivers = variant, [drivers_of(world.dim, variant)]
-        self._last: tuple[Floats, int] | None = None
-        """The last path and the row of its goal. It is kept when blocked, because an obstacle may leave it again."""
-        self._failures = self._cut = 0
+        self._updates: ArmUpdates | MapUpdates
+        most = require_count("motions", motions)
+        if isinstance(world, ArmWorld):
+            self._updates = ArmUpdates(world, goal_of_arm(goal), most, rng, Reading(tip=tip, frame=frame))
+        else:
+            # Imported late: an arm has no map.
+            from evenroad.planning.map_updates import MapUpdates
+
+            self._updates = MapUpdates(world, goal, rng)
         self._lock = OwnLock()
 
+    @property
+    def world(self) -> ArmWorld | CarWorld | DiskWorld:
+        """The robot and its scene or map at the last update."""
+        return self._updates.world
+
+    @property
+    def path(self) -> Floats | None:
+        """The path of the last update, (p, dim)."""
+        return self._updates.path
+
     def __repr__(self) -> str:
-        return f"Replanner({self.world!r}, {counted(len(self._problem.goals), 'goal')})"
+        return f"Replanner({self.world!r}, {self._updates.goals})"
 
     def update(
         self,
         q: ConfigurationLike,
-        scene: Scene | None = None,
+        scene: Scene | ChangedMap | None = None,
         *,
         moved: Mapping[str, Pose] | None = None,
         added: Bodies = (),
         removed: str | Sequence[str] = (),
     ) -> PlanResult:
-        """Return a path from the arm's configuration, free in the current scene, or why there is none.
+        """Return a path from the robot's configuration, free in the current scene, or why there is none.
 
         Parameters
         ----------
         q : array_like, shape (dim,), mapping or str
-            Configuration of the arm, as a start of :func:`evenroad.plan`.
+            Configuration of the robot, as a start of :func:`evenroad.plan`.
         scene : Scene, optional
-            The current scene, in place of that of the last update.
+            The current scene, in place of that of the last update.  For a car or a disk: its occupied cells, a bool
+            array of the map's shape, a :class:`evenroad.GridMap` of the same frame, or a
+            :class:`evenroad.PolygonMap`.
         moved : mapping of str to Pose, optional
             Name of an obstacle -> its current pose.
         added : sequence of Shape or Obstacle
@@ -143,8 +157,8 @@ class Replanner:
         Returns
         -------
         PlanResult
-            Its `planner` says whether the path is ``kept`` or from new ``trees``.  Without a path the arm should stop.
-            The status is ``budget_spent`` if the trees of the next update may find one.
+            Its `planner` says whether the path is ``kept`` or new, from ``trees``, ``curves`` or ``cells``.  Without a
+            path the robot should stop.  The status is ``budget_spent`` if the next update may find one.
 
         Raises
         ------
@@ -159,105 +173,45 @@ class Replanner:
         <Status.GOAL_INVALID: 'goal_invalid'>
         """
         with self._lock:
-            began, world = now(), self.world if scene is None else replace(self.world, scene=scene)
-            if removed:
-                world = world.without(*([removed] if isinstance(removed, str) else removed))
-            if added:
-                world = world.with_(added)
-            if moved is not None:
-                world = world.moved(moved)
-            start = as_configuration(world.robot, q, world.scene, name="q")
-            self.world, self.path = reaching(world, start), None
-            result = self._kept(start, began)
-            result = self._planned(start, began) if result is None else result
-            self.path = result.path
-            return result
+            if isinstance(self._updates, ArmUpdates):
+                return self._updates.update(q, scene, moved, added, removed)
+            if moved is not None or added or removed:
+                raise InvalidValue("obstacles that are moved, added or removed are an arm's; a map has new cells")
+            return self._updates.update(q, scene)
 
-    def _kept(self, start: Floats, began: float) -> PlanResult | None:
-        """Return the rest of the last path from the arm's configuration, shortened, or None if it is not free."""
-        if self._last is None:
-            return None
-        path, goal = self._last
-        for rest in paths_on(self.world, start, path):
-            if self.world.checker.motion_valid(rest[:-1], rest[1:], VALIDATION_TOLERANCE).all():
-                break
-        else:
-            return None
-        rest, more = self._shortened(rest)
-        return self._result(start, rest, goal, "kept", {"shortcut_motions": more}, began)
+    def ahead(self, q: ConfigurationLike, scene: ChangedMap | None = None) -> Ahead:
+        """Return how much of the path that is driven is still free, without planning another one.
 
-    def _shortened(self, path: Floats) -> tuple[Floats, int]:
-        """Return a path that is not longer, and the number of motions checked; each update tries other shortcuts."""
-        if len(path) == 2:
-            return path, 0
-        self._cut = (self._cut + 1) % len(_pairs())
-        return shorten(checks_of(self.world), path, _pairs()[self._cut], SHORTCUTS)
+        Parameters
+        ----------
+        q : array_like, shape (dim,)
+            Where the car or the disk is.
+        scene : optional
+            The current map, as of :meth:`update`.
 
-    def _planned(self, start: Floats, began: float) -> PlanResult:
-        """Return a new path from the arm's configuration to the nearest goal that was not tried just before."""
-        world, problem = self.world, replace(self._problem, world=self.world, start=start)
-        if (result := unreached(problem)) is not None:
-            return result
-        goals = problem.goals
-        (free,) = np.nonzero(world.valid(goals))
-        if not len(free) or not world.valid(start):
-            found = refusal(Attempt(problem, "trees"))
-            assert found is not None
-            return found
-        order = free[np.argsort(world.space.distance(np.broadcast_to(start, goals[free].shape), goals[free]))]
-        goal = int(order[self._failures % len(order)])
-        answered = answer(world.checker, start, goals[goal], self._driver(), self._motions, np.inf, "none")
-        counts = dict(
-            nodes=answered.nodes, configurations_checked=answered.configurations, edges_checked=answered.motions
-        )
-        if answered.ended != "solved":
-            self._failures += 1
-            message = f"no path within {answered.motions} motions; the next update grows other trees"
-            timings = {"search": now() - began}
-            return make_result(problem, Status.BUDGET_SPENT, message, planner="trees", counts=counts, timings=timings)
-        self._failures = 0
-        path, counts["shortcut_motions"] = self._shortened(answered.path)
-        return self._result(start, path, goal, "trees", counts, began)
+        Returns
+        -------
+        Ahead
+            ``free_until``, the length from the robot on that is proved free, ``length`` of the rest of the path, and
+            ``is_free``.
 
-    def _driver(self) -> Drivers:
-        """Return the sequences that drive this update's trees."""
-        number = self._failures % VARIANTS
-        while len(self._drivers) <= number:
-            self._drivers.append(drivers_of(self.world.dim, self._variant + len(self._drivers)))
-        return self._drivers[number]
+        Raises
+        ------
+        InvalidValue
+            For an arm, or before the first path.
 
-    def _result(
-        self, start: Floats, path: Floats, goal: int, planner: str, counts: dict[str, int], began: float
-    ) -> PlanResult:
-        """Return the result with a path that is proved."""
-        self._last = path, goal
-        path.setflags(write=False)
-        problem = Problem(self.world, start, self._problem.goals)
-        return solution(problem, path, goal, planner=planner, counts=counts, timings={"search": now() - began})
-
-
-@once
-def _pairs() -> tuple[Points, ...]:
-    """Return the pairs of positions that updates try to join, a few for each."""
-    pairs = share_pairs(PAIRS)
-    return tuple(Points(pairs[i : i + SHORTCUTS]) for i in range(0, len(pairs), SHORTCUTS))
-
-
-def paths_on(world: ArmWorld, q: Floats, path: Floats) -> list[Floats]:
-    """Return paths from a configuration, (dim,), to the end of a path, (p, dim), best first.
-
-    The first leads to the next waypoint.  If the configuration is beside the path, the second leads to the nearest
-    position on the path before.
-    """
-    flat = world.space.flat
-    a, along = path[:-1], flat.difference(path[:-1], path[1:])
-    aside = flat.difference(a, np.broadcast_to(q, a.shape))
-    squared = np.einsum("ij,ij->i", along, along)
-    share = np.clip(np.einsum("ij,ij->i", aside, along) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
-    away = np.linalg.norm(aside - share[:, np.newaxis] * along, axis=1)
-    nearest = len(away) - 1 - int(np.argmin(away[::-1]))
-    on = np.concatenate([q[np.newaxis], path[nearest + 1 :]])
-    if away[nearest] <= 1e-9:
-        return [on]
-    beside = world.space.interpolate(path[nearest : nearest + 1], path[nearest + 1 : nearest + 2], share[nearest])
-    return [on, np.concatenate([q[np.newaxis], beside, path[nearest + 1 :]])]
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> disk = er.GridMap(np.zeros((40, 90), dtype=bool), resolution=0.1).world(radius=0.3)
+        >>> live = er.Replanner(disk, (8, 2))
+        >>> live.update((1, 2)).cost
+        7.0
+        >>> live.ahead((2, 2))
+        Ahead(free_until=6.0, length=6.0)
+        """
+        with self._lock:
+            if isinstance(self._updates, ArmUpdates):
+                raise InvalidValue("ahead is of cars and disks: an arm's update says whether its path is kept")
+            return self._updates.ahead(q, scene)

@@ -156,10 +156,10 @@ def _result(attempt: Attempt, queries: Sequence[CarQuery], number: int, space: C
     goal = int(attempt.goals[number])
     with attempt.watch("shortcut"), until(attempt.time):
         rows, raw = query.path(tries)
-    path = milestones = _sampled(problem, space, rows, goal, world.grid.resolution)
+    path = milestones = sampled(problem, space, rows, goal, world.grid.resolution)
     length = raw_length = _length(rows)
     if raw is not rows:
-        milestones, raw_length = _sampled(problem, space, raw, goal, world.grid.resolution), _length(raw)
+        milestones, raw_length = sampled(problem, space, raw, goal, world.grid.resolution), _length(raw)
     pieces, counts = as_pieces(rows, space), _counts(queries)
     counts["shortcut_motions"] = query.shortcuts
     said = f"{path_message(path, length, goal, len(problem.goals))}, {len(pieces)} pieces and {cusps_of(pieces)} cusps"
@@ -178,7 +178,7 @@ def _result(attempt: Attempt, queries: Sequence[CarQuery], number: int, space: C
     )
 
 
-def _sampled(problem: Problem, space: CarSpace, rows: Floats, goal: int, step: float) -> Floats:
+def sampled(problem: Problem, space: CarSpace, rows: Floats, goal: int, step: float) -> Floats:
     """Return the poses along pieces, (p, 3), from the very start to the very goal, up to whole turns."""
     path = space.steering.poses_along(problem.start, rows, step)
     if len(path) == 1:

@@ -94,6 +94,10 @@ class DiskWorld(OneOrMany):
         """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,)."""
         return self.disk.motions_free(*as_batch_pair(a, b, 2))
 
+    def with_cells(self, occupied: Bools) -> DiskWorld:
+        """Return the world of the same disk on a map whose cells have changed: see :meth:`GridMap.with_cells`."""
+        return DiskWorld(self.grid.with_cells(occupied), self.radius, self.margin)
+
     def driven_free(self, states: Floats) -> Bools:
         """Return which motions between states of a trajectory, (n, 2), are free: (n - 1,).
 

@@ -249,6 +249,34 @@ class GridMap(metaclass=KnowsElsewhere):
 
         return DiskWorld(self, require_positive("radius + clearance", own + extra), extra)
 
+    def with_cells(self, occupied: Bools) -> GridMap:
+        """Return the map with other occupied cells, none of them unknown, in the same frame.
+
+        Parameters
+        ----------
+        occupied : array_like of bool, shape (rows, cols)
+
+        Returns
+        -------
+        GridMap
+
+        Raises
+        ------
+        InvalidValue
+            If it has another shape, or is not of bools.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> grid = er.GridMap(np.zeros((20, 30), dtype=bool), resolution=0.1)
+        >>> grid.with_cells(np.ones((20, 30), dtype=bool))
+        GridMap(20 x 30 cells of 0.1, 100% occupied)
+        """
+        if np.shape(occupied) != self.shape:
+            raise InvalidValue(f"occupied must have the shape of the map, {self.shape}, got {np.shape(occupied)}")
+        return GridMap(occupied, self.frame, notes=self.notes)
+
     def cropped(self) -> GridMap:
         """Return the map without rows and columns beyond its outermost free cells, in the same position.
 

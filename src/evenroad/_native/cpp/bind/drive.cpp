@@ -319,7 +319,7 @@ double free_length(const drive::Vehicle& vehicle, const drive::Steering& steerin
   for (drive::Piece& piece : driven) piece.length /= vehicle.scale();
   const double close = std::max(tolerance / vehicle.scale(), 1e-6);
   return vehicle.scale() * without_gil([&] {
-           drive::Checks checks(vehicle);
+           drive::Checks checks(vehicle, drive::Checks::Tables::NONE);
            return drive::free_length(checks, steering.in(vehicle.scale()), from, driven, close);
          });
 }

@@ -46,8 +46,10 @@ bool meets_turning(Vec a, Vec b, double sense, Vec p, Vec q) {
 
 }  // namespace
 
-Checks::Checks(const Vehicle& vehicle)
-    : vehicle_(vehicle), tolerance_(LINE_TOLERANCE * std::max(1.0, 1.0 / vehicle.scale())) {}
+Checks::Checks(const Vehicle& vehicle, Tables tables)
+    : vehicle_(vehicle),
+      has_tables_(tables == Tables::USED),
+      tolerance_(LINE_TOLERANCE * std::max(1.0, 1.0 / vehicle.scale())) {}
 
 bool Checks::is_free(const Pose& pose) {
   counts.poses++;
@@ -59,12 +61,12 @@ bool Checks::is_free(const Pose& pose) {
   };
   for (const Vec& centre : footprint.inner.centres) {
     const Vec at = placed(centre);
-    if (!vehicle_.has(at) || state(vehicle_.inner(), at) == world::BLOCKED) return false;
+    if (!vehicle_.has(at) || (has_tables_ && state(vehicle_.inner(), at) == world::BLOCKED)) return false;
   }
-  const bool is_clear = std::ranges::all_of(footprint.cover.centres, [&](const Vec& centre) {
-    const Vec at = placed(centre);
-    return vehicle_.has(at) && state(vehicle_.cover(), at) >= world::FREE;
-  });
+  const bool is_clear = has_tables_ && std::ranges::all_of(footprint.cover.centres, [&](const Vec& centre) {
+                          const Vec at = placed(centre);
+                          return vehicle_.has(at) && state(vehicle_.cover(), at) >= world::FREE;
+                        });
   if (is_clear) return true;
   Corners corners;
   for (const std::vector<Vec>& part : footprint.parts) {
@@ -91,7 +93,7 @@ bool Checks::is_free_between(const Motion& motion) {
 bool Checks::is_free_within(const Motion& motion, const Interval& interval) {
   const double t = 0.5 * (interval.begin + interval.end);
   const Pose middle = motion.at(t);
-  if (is_covered_free(motion, interval, Placed(middle))) return true;
+  if (has_tables_ && is_covered_free(motion, interval, Placed(middle))) return true;
   if (const Answer answer = sweep(motion, interval); answer != Answer::UNKNOWN) return answer == Answer::FREE;
   if (!is_free(middle)) return false;
   return is_free_within(motion, {interval.begin, interval.first, t, middle}) &&

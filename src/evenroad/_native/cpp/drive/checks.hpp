@@ -35,7 +35,9 @@ struct Counts {
 
 class Checks {
  public:
-  explicit Checks(const Vehicle& vehicle);
+  /// Without tables, few checks of a map that is new are much faster.
+  enum class Tables : std::uint8_t { USED, NONE };
+  explicit Checks(const Vehicle& vehicle, Tables tables = Tables::USED);
 
   bool is_free(const Pose& pose);
   bool is_free(const Motion& motion);
@@ -67,6 +69,7 @@ class Checks {
   bool turns_into(std::span<const Vec> first, std::span<const Vec> last, const Motion& motion);
 
   const Vehicle& vehicle_;
+  bool has_tables_;
   double tolerance_;
   Covered covered_;
   ClockWatch clock_{256};
