@@ -51,7 +51,7 @@ def test_a_disk_s_plan_is_played_and_not_sent(run, refuse, tmp_path):
     assert (page["kind"], page["size"], page["radius"]) == ("map", [640, 480], 6.0)
     assert len(page["states"]) == len(page["times"]) == len(page["clearance"])
     assert min(page["clearance"]) > 0
-    assert "plan of a disk" in refuse("send", "maze1.json")
+    assert "plan on a map" in refuse("send", "maze1.json")
     assert "--html plays" in refuse("view", "maze1.json", "--gif", "out.gif")
 
 

@@ -168,7 +168,7 @@ def test_bash_completes_words(run, words, wanted):
     ("plan a.png --robot-radius 1 --start 1 1 --goal 2 2 -n many", "-n/--n must be a whole number, got 'many'"),
     ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
     ("measure", "missing from evenroad measure: SET"),
-    ("train -n 16 -d 2 -o a --method sgd", "--method must be one of anneal, mpmc, order, got 'sgd'"),
+    ("train -n 16 -d 2 -o a --method sgd", "--method must be one of anneal, mpmc, printed, order, got 'sgd'"),
     ("plot", "unknown verb 'plot'; known: bench, certify, certify-path, demo, export"),
     ("mesure set.npy", "unknown verb 'mesure'; did you mean 'measure'?"),
     ("plan a.yaml --robto ur5 --start home --goal up", "unknown option of evenroad plan: '--robto'; did you mean"),

@@ -26,9 +26,9 @@ def test_the_default_family_in_ten_dimensions_is_there_at_once(run, tmp_path):
     assert load_points(tmp_path / "a.npz").origin.family == "even"
 
 
-@pytest.mark.parametrize("verb", ["points", "plan"])
-def test_the_help_names_every_sampler(run, verb):
-    _, out, _ = run(verb, "--help")
+@pytest.mark.parametrize("words", [("points", "--help"), ("plan", "--help", "robot")])
+def test_the_help_names_every_sampler(run, words):
+    _, out, _ = run(*words)
     named = re.findall(r"\w+", out.rpartition("--sampler")[2].partition("--")[0])
     assert set(SAMPLERS) <= set(named)
 
@@ -134,7 +134,7 @@ def test_what_is_no_file_of_points_is_refused_by_name(refuse, tmp_path):
 
 
 def test_a_value_beyond_the_range_of_a_float_is_left_out_and_said_so():
-    from evenroad.cli.measure import _finite
+    from evenroad.points.evenness import _finite
 
     assert _finite("a", 0.5, "note") == ("a", 0.5, "note")
     for value in (np.inf, np.nan):

@@ -59,7 +59,7 @@ def test_of_two_files_of_a_name_the_first_folder_s_is_taken_and_a_file_here_goes
 def test_a_misspelt_name_is_answered_by_the_nearest_one(wheel):
     with pytest.raises(
         UnknownName,
-        match=r"unknown robot 'other_robt'; did you mean 'other_robot'\?",
+        match=r"unknown robot 'other_robt'; near names: other_robot; `evenroad robots` lists them",
     ):
         find_robot("other_robt")
 

@@ -10,7 +10,7 @@ from evenroad.geometry.mesh_shape import gap_notes
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Sphere
 from evenroad.loading.units import EXPECTED, UNLIKE
 from evenroad.robots.planes import DEPTH, SIDE
-from evenroad.scenes.obstacles import Obstacles
+from evenroad.scenes.obstacles import Changed, Rows
 from evenroad.scenes.scene import Scene
 
 _THICK = 10.0
@@ -23,7 +23,7 @@ def scene_notes(scene: Scene, reach: float) -> tuple[str, ...]:
 
     Obstacles of arrays and changed ones have none: they may be others for each plan, which would take a tenth longer.
     """
-    if type(scene.table) is not Obstacles or not scene.obstacles:
+    if type(scene.table) in (Rows, Changed) or not scene.obstacles:
         return ()
     return _size_notes(scene, reach) + gap_notes("obstacle", ((each.name, each.body) for _, each in scene.surfaces))
 

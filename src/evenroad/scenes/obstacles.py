@@ -1,6 +1,6 @@
 """Obstacles of a scene, as a sequence that never changes; the cost of changes follows their number.
 
-It has three sources: obstacles, rows of boxes, or changes of another sequence.  The other forms are made on first use.
+It has three sources: obstacles, rows, or changes of another sequence.  The other forms are made on first use.
 """
 
 from __future__ import annotations
@@ -124,6 +124,10 @@ class Rows(Obstacles):
     def surfaces(self) -> tuple[tuple[int, Obstacle], ...]:
         """Nothing."""
         return ()
+
+
+class EntryRows(Rows):
+    """Obstacles that a file or a mapping describes one by one."""
 
 
 class Changed(Obstacles):

@@ -17,7 +17,7 @@ from evenroad.loading.find import DATA
 from evenroad.robots.held import HeldObject
 from evenroad.scenes.entry import Entry
 from evenroad.scenes.moveit_scene import read_scene_text
-from evenroad.scenes.obstacles import Rows
+from evenroad.scenes.obstacles import EntryRows
 from evenroad.scenes.planning_scene import read_planning_scene
 from evenroad.scenes.robot_setup import Said
 from evenroad.scenes.scan import allowed_within
@@ -152,13 +152,13 @@ def _scene(document: Mapping[str, object], path: Path) -> Scene:
     return _with_parts(scene, parts)
 
 
-def _primitives(document: Mapping[str, object]) -> Rows | None:
+def _primitives(document: Mapping[str, object]) -> EntryRows | None:
     """Return the obstacles of a mapping that holds primitives and their poses alone, in a tenth of the time."""
     entries = document["obstacles"]
     if type(entries) is not dict or not document.keys().isdisjoint(("allowed", "attach")):
         return None
     rows = native.primitive_rows(entries)
-    return None if rows is None else Rows(rows, tuple(entries))
+    return None if rows is None else EntryRows(rows, tuple(entries))
 
 
 def _states_and_limits(root: Entry) -> Said:
