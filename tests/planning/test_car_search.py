@@ -104,6 +104,17 @@ def test_shortcuts_are_not_tried_where_the_path_is_the_shortest_curve_and_end_wh
     assert 0 < sum(tries) < 4 * SHORTCUTS
 
 
+def test_a_car_does_not_turn_round_to_drive_backwards_all_the_way():
+    boxes = [[(0, 0), (1, 0), (1, 1), (0, 1)], [(3, 0), (4, 0), (4, 2), (3, 2)]]
+    yard = er.PolygonMap(boxes, bounds=((-5, -5), (8, 8)))
+    car = yard.world(footprint=[(-0.4, -0.2), (0.4, -0.2), (0.4, 0.2), (-0.4, 0.2)], turning_radius=0.8)
+    result = er.plan(car, (-2, 0, 0), (6, 0.5, 0))
+    # Straight past both boxes it is 8.15 m.  The trees' first path is driven backwards for 6.5 m.
+    assert result.milestone_cost > 12
+    assert result.cost < 8.3
+    assert result.cusps == 0
+
+
 def test_where_cusps_cost_more_there_are_fewer():
     world = er.GridMap(np.zeros((80, 80), dtype=bool), resolution=0.25).world(footprint=BOX, turning_radius=1.5)
     cheap, expensive = (er.plan(world, (10, 10, 0), (10, 11, 0), CarSearch(cusp_cost=cost)) for cost in (0.0, 50.0))

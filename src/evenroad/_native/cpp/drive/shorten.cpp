@@ -17,6 +17,8 @@ constexpr double LEAST_SAVED = 1e-6;
 /// Number of tries that have to save this share of the cost together: else there are no more.
 constexpr std::int64_t BATCH = 24;
 constexpr double SAVED_IN_BATCH = 2e-3;
+/// Number of poses on the path, in each batch, that are tried in the opposite direction.
+constexpr std::int64_t TURNS_ROUND = 4;
 
 /// A path, and where its pieces begin.
 class Driven {
@@ -62,6 +64,20 @@ class Driven {
       pieces.insert(pieces.end(), pieces_.begin() + static_cast<std::ptrdiff_t>(last.piece) + 1, pieces_.end());
       drive(merged(steering_, pieces));
       return;
+    }
+  }
+
+  /// Replace the whole path by two words through a pose on it, in the opposite direction, if it costs less.
+  void turn_round(double along) {
+    Pose via = position_at(along).pose;
+    via.angle += PI;
+    const Words to(steering_, start_, via), on(steering_, via, begins_.back().pose);
+    const std::span<const Piece> first = to.best().pieces(), second = on.best().pieces();
+    std::vector<Piece> pieces(first.begin(), first.end());
+    pieces.insert(pieces.end(), second.begin(), second.end());
+    if (drive::cost(steering_, pieces) > cost_ - LEAST_SAVED) return;
+    if (are_free(checks_, steering_, start_, first) && are_free(checks_, steering_, via, second)) {
+      drive(merged(steering_, pieces));
     }
   }
 
@@ -127,6 +143,8 @@ std::int64_t shorten(Checks& checks, const Steering& steering, const Pose& start
         before = driven.cost();
       }
       const double total = driven.length();
+      // A car that turned round to drive backwards finds no shorter way close by.
+      if (k % BATCH < TURNS_ROUND && steering.is_reversing) driven.turn_round(total * (0.5 + k % BATCH) / TURNS_ROUND);
       // The whole first, then from the start and from the goal in turns.
       double from = k % 4 == 0 ? 0.0 : even[0] * total, to = k % 4 == 1 || k == 0 ? total : even[1] * total;
       if (from > to) std::swap(from, to);
