@@ -64,7 +64,7 @@ CALLS = {
     "result.save('way.txt')": ".json",
     "result.plot(7)": "file",
     "result.plot(world='office.yaml')": "world",
-    "er.show('plan.json')": "plan or a map",
+    "er.show('plan.json')": "plan or trajectory plan.json",
     "er.plan(arm, 'home', 'zero', timeout=1)": "seconds=5",
     "er.plan(arm, 'home', 'zero', clearance=0.02)": "ArmWorld(robot, scene, clearance=...)",
     "er.plan(arm, 'home', 'zero', padding=0.02)": "load_robot(file, padding=...)",
