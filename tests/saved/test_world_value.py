@@ -19,6 +19,11 @@ UNKNOWN = np.zeros((40, 60), dtype=bool)
 UNKNOWN[38:, :7] = True
 MAP = er.GridMap(CELLS, resolution=0.1, unknown=UNKNOWN)
 BOX = [(-0.3, -0.2), (0.3, -0.2), (0.3, 0.2), (-0.3, 0.2)]
+# A yard with a post in it, and a wall of no thickness.
+YARD = er.PolygonMap(
+    [[[(1, 1), (5, 1), (5, 3.3), (1, 3)], [(1.5, 1.5), (4.5, 1.5), (3, 2.9)]], [(0.2, 3.7), (5, 3.9)]],
+    bounds=((0, 0), (6, 4.05)), resolution=0.2, names=("yard", "wall"),
+)  # fmt: skip
 TETRAHEDRON = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]), [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
 
 
@@ -36,6 +41,7 @@ WORLDS = {
     "disk": MAP.world(0.2, clearance=0.05),
     "car": MAP.world(footprint=BOX, turning_radius=0.5, reverse=False, clearance=0.01),
     "holonomic": MAP.world(footprint=BOX, holonomic=True),
+    "polygons": YARD.world(footprint=BOX, turning_radius=0.5),
 }
 
 
@@ -74,6 +80,19 @@ def test_a_damaged_map_is_refused():
         value["map"] |= damage
         with pytest.raises(BrokenFile, match=r"plan\.json is damaged: its world"):
             world_of(value, "plan.json")
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [{"borders": "yard.geojson"}, {"borders": [[]]}, {"bounds": None}, {"resolution": 1e-9}, {"resolution": None},
+     {"names": 7}, {"names": ["one"]}],
+    ids=str,
+)  # fmt: skip
+def test_damaged_polygons_are_refused(damage):
+    value = value_of(WORLDS["polygons"])
+    value["polygons"] |= damage
+    with pytest.raises(BrokenFile, match=r"plan\.json is damaged: its world"):
+        world_of(value, "plan.json")
 
 
 @pytest.mark.parametrize("what", ["result", "trajectory"])

@@ -28,6 +28,7 @@ from evenroad.scenes.written import read_scene, scene_files
 from evenroad.world import World
 
 if TYPE_CHECKING:
+    from evenroad.driving.polygon_map import PolygonMap
     from evenroad.world.gridmap import GridMap, MapFrame
 
 MOST_CELLS = 400_000_000
@@ -52,8 +53,9 @@ def value_of(world: World | None) -> dict[str, Json] | None:
     if isinstance(world, DiskWorld):
         return {**_map_value(world.grid), "radius": world.radius, "clearance": world.margin}
     if isinstance(world, CarWorld):
-        outlines = [outline.tolist() for outline in world.footprint.outlines]
-        return {**_map_value(world.grid), "footprint": outlines, **{name: getattr(world, name) for name in _OF_CAR}}
+        car = {name: getattr(world, name) for name in _OF_CAR}
+        of_map = _map_value(world.grid) if world.polygons is None else _polygons_value(world.polygons)
+        return {**of_map, "footprint": [outline.tolist() for outline in world.footprint.outlines], **car}
     return None
 
 
@@ -90,10 +92,12 @@ def world_of(value: object, where: object) -> World:
         from evenroad.driving.footprint import Footprint
         from evenroad.world.gridmap import DiskWorld
 
-        grid = _map_of(value["map"])
         if "radius" in value:
-            return DiskWorld(grid, value["radius"], value["clearance"])
-        return CarWorld(grid, Footprint(value["footprint"]), **{name: value[name] for name in _OF_CAR})
+            return DiskWorld(_map_of(value["map"]), value["radius"], value["clearance"])
+        footprint, car = Footprint(value["footprint"]), {name: value[name] for name in _OF_CAR}
+        if "polygons" in value:
+            return _polygons_of(value["polygons"]).world(footprint=footprint, **car)
+        return CarWorld(_map_of(value["map"]), footprint, **car)
     except (EvenroadError, TypeError, ValueError, AttributeError, LookupError, zlib.error) as error:
         raise BrokenFile(f"{where} is damaged: its world cannot be read: {error}") from error
 
@@ -148,6 +152,28 @@ def _map_of(value: Any) -> GridMap:
         raise ValueError(f"a map of more than {MOST_CELLS} cells")
     occupied, unknown = (_unpacked(value[name], frame) for name in ("occupied", "unknown"))
     return GridMap(occupied, frame, unknown)
+
+
+def _polygons_value(polygon_map: PolygonMap) -> dict[str, Json]:
+    """Return polygons as they are: their cells would be other obstacles."""
+    return {
+        "polygons": {
+            "borders": [[border.tolist() for border in each] for each in polygon_map.polygons],
+            "names": list(polygon_map.names),
+            "bounds": [each.tolist() for each in polygon_map.bounds],
+            "resolution": polygon_map.resolution,
+        }
+    }
+
+
+def _polygons_of(value: Any) -> PolygonMap:
+    from evenroad.driving.polygon_map import PolygonMap
+
+    # A text would be the name of a file, and None stands for a default.
+    if not isinstance(borders := value["borders"], list):
+        raise TypeError("borders must be lists")
+    low, high = value["bounds"]
+    return PolygonMap(borders, bounds=(low, high), resolution=float(value["resolution"]), names=value["names"])
 
 
 def _packed(cells: Bools) -> str:
