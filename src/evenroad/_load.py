@@ -11,6 +11,7 @@ from evenroad._files import read_json_file
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
 
 if TYPE_CHECKING:
+    from evenroad.driving.polygon_map import PolygonMap
     from evenroad.planning.result import PlanResult
     from evenroad.points.pointset import PointSet
     from evenroad.roadmap.roadmap import Roadmap
@@ -18,13 +19,14 @@ if TYPE_CHECKING:
     from evenroad.trajectory.formats import Saved
     from evenroad.world.gridmap import GridMap
 
+_POLYGONS = ".geojson"
 _POINTS = (".npy", ".npz", ".csv")
 _SCENES = (".scene", ".urdf", ".glb", ".gltf")
 _MAPS = (".yaml", ".yml", ".png", ".pgm", ".bmp", ".map")
 
 
 @explains_calls
-def load(path: str | os.PathLike[str]) -> PlanResult | Saved | Scene | GridMap | Roadmap | PointSet:
+def load(path: str | os.PathLike[str]) -> PlanResult | Saved | Scene | GridMap | PolygonMap | Roadmap | PointSet:
     """Return what a file holds: a plan, a trajectory, a scene, a map, a roadmap or points.
 
     Robots are not among these, as a URDF may also be a scene: `load_robot` reads them.
@@ -33,16 +35,18 @@ def load(path: str | os.PathLike[str]) -> PlanResult | Saved | Scene | GridMap |
     ----------
     path : str or path-like
         A ``.json`` of a result or a trajectory, also of ``evenroad plan``; a ``.roadmap``; points in ``.npy``, ``.npz``
-        or ``.csv``; a scene or a map, or the name of a shipped one.
+        or ``.csv``; a scene or a map, or the name of a shipped one; polygons in ``.geojson``.
 
     Returns
     -------
-    PlanResult, Trajectory, CarTrajectory, Scene, GridMap, Roadmap or PointSet
+    PlanResult, Trajectory, CarTrajectory, Scene, GridMap, PolygonMap, Roadmap or PointSet
 
     Raises
     ------
     UnknownName
         For another suffix.
+    InvalidValue
+        For the answer to a task.
     BrokenFile
         If the file is missing or damaged.
 
@@ -62,6 +66,10 @@ def load(path: str | os.PathLike[str]) -> PlanResult | Saved | Scene | GridMap |
         return load_roadmap(path)
     if suffix in _POINTS:
         return _of_points(path)
+    if suffix == _POLYGONS:
+        from evenroad.driving.polygon_map import PolygonMap
+
+        return PolygonMap(path)
     from evenroad.scenes.scene_file import SCENES, is_scene, load_scene
 
     if suffix in _SCENES or (suffix in ("", ".yaml", ".yml") and (file.stem in SCENES or is_scene(path))):
@@ -70,7 +78,7 @@ def load(path: str | os.PathLike[str]) -> PlanResult | Saved | Scene | GridMap |
         from evenroad.world.gridmap import load_map
 
         return load_map(path)
-    raise UnknownName.among("kind of file", suffix, (".json", ".roadmap", *_POINTS, *_SCENES, *_MAPS))
+    raise UnknownName.among("kind of file", suffix, (".json", ".roadmap", _POLYGONS, *_POINTS, *_SCENES, *_MAPS))
 
 
 def _of_json(path: str | os.PathLike[str]) -> PlanResult | Saved:
@@ -79,6 +87,8 @@ def _of_json(path: str | os.PathLike[str]) -> PlanResult | Saved:
         from evenroad.io import plan_of
 
         return plan_of(record, path)[0]
+    if isinstance(record, dict) and str(record.get("format")).startswith("evenroad.task "):
+        raise InvalidValue(f"{path} is the answer to a task, which is not read back: `evenroad view` draws it")
     if isinstance(record, dict) and "format" in record:
         from evenroad.trajectory.formats import saved_of
 

@@ -8,7 +8,7 @@ import pytest
 import evenroad as er
 from evenroad._seal import with_digest
 from evenroad.cli import main
-from evenroad.errors import BrokenFile, UnknownName
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.saved.world_value import value_of, world_of
 from evenroad.task import MoveTo, Task
 from evenroad.task.save import load_parts
@@ -144,8 +144,14 @@ def test_a_file_is_loaded_by_what_it_holds(tmp_path):
     np.testing.assert_array_equal(er.load(tmp_path / "cell.roadmap").edges, roadmap.edges)
     assert er.load("shelf").names == er.load_scene("shelf").names
     assert er.load("maze1").shape == (480, 640)
+    triangle = {"type": "Polygon", "coordinates": [[[4, 0], [5, 0], [4.5, 2], [4, 0]]]}
+    (tmp_path / "yard.geojson").write_text(json.dumps(triangle))
+    assert er.load(tmp_path / "yard.geojson").polygons[0][0].tolist() == [[4, 0], [5, 0], [4.5, 2]]
     with pytest.raises(UnknownName, match=r"unknown kind of file '\.txt'"):
         er.load(tmp_path / "notes.txt")
+    (tmp_path / "task.json").write_text(json.dumps(with_digest({"format": "evenroad.task 1"})))
+    with pytest.raises(InvalidValue, match=r"task\.json is the answer to a task"):
+        er.load(tmp_path / "task.json")
     (tmp_path / "other.json").write_text(json.dumps(with_digest({"a": 1})))
     with pytest.raises(BrokenFile, match="neither a plan nor a trajectory"):
         er.load(tmp_path / "other.json")
