@@ -1,5 +1,6 @@
 /* evenroad-verify in C: checks that a certificate proves a robot's path free of collision, as docs/certificates.md
  * says. */
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -74,6 +75,9 @@ int main(int count, char** words) {
     fputs(USAGE, stderr);
     return BAD_INPUT;
   }
+#ifdef SIGPIPE
+  signal(SIGPIPE, SIG_IGN); /* `head` closes the output early: the exit code stays the answer */
+#endif
   int code = setjmp(on_failure);
   if (code == REFUSED) printf("REFUSED: %s\n", failure);
   if (code == BAD_INPUT) fprintf(stderr, "evenroad-verify: %s\n", failure);

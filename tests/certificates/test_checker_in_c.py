@@ -1,6 +1,8 @@
 """The checker in C, which shares nothing with the one in Python, says the same of every certificate and forgery."""
 
+import os
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -30,6 +32,17 @@ def says(words):
 def test_both_commands_print_the_same_of_a_plan(written, capsys):
     assert main(written().words) == ACCEPTED
     assert says(written().words) == (ACCEPTED, capsys.readouterr().out, "")
+
+
+def test_an_output_that_is_closed_early_leaves_the_exit_code():
+    refused = [box_reach().words[0], *shelf().words[1:]]
+    for words, code in ((box_reach().words, ACCEPTED), (refused, REFUSED)):
+        for command in ([program("command")], [sys.executable, "-m", "evenroad_verify"]):
+            reading, writing = os.pipe()
+            os.close(reading)
+            done = subprocess.run([*command, *words], stdout=writing, stderr=subprocess.PIPE)
+            os.close(writing)
+            assert (done.returncode, done.stderr) == (code, b"")
 
 
 def test_a_path_in_a_table_must_be_that_of_the_certificate(tmp_path):

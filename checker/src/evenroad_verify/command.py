@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -79,13 +80,21 @@ def main(words: Sequence[str] | None = None) -> int:
         if asked.write is not None:
             _write(asked.write, inputs.carried)
     except Refused as error:
-        print(f"REFUSED: {error}")
+        _print([f"REFUSED: {error}"])
         return REFUSED
     except (BadInput, OSError, RecursionError) as error:
         print(f"evenroad-verify: {error}", file=sys.stderr)
         return BAD_INPUT
-    print("\n".join(lines))
+    _print(lines)
     return ACCEPTED
+
+
+def _print(lines: list[str]) -> None:
+    """Print lines, as many as somebody reads: `head` closes the output early, and the exit code stays the answer."""
+    try:
+        print("\n".join(lines), flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for the flush at the end of Python
 
 
 def _file(word: str) -> Path | None:
