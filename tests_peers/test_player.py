@@ -49,7 +49,7 @@ def test_bodies_and_colours_are_shown_as_the_boxes_say(tab):
     tab.check("#show-colour-by-clearance")
     coloured = tab.screenshot()
     assert coloured != before
-    tab.uncheck("#show-capsules")
+    tab.uncheck("#show-collision")
     assert tab.screenshot() != coloured
 
 

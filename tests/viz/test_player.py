@@ -33,11 +33,11 @@ def test_a_page_holds_the_joints_along_the_path_and_each_body_once(reach):
     expected = joint_values(robot, np.stack([reach.start, reach.goal]))
     moving = [joint.name for joint in robot.joints if joint.kind != "fixed"]
     np.testing.assert_allclose([first, last], np.transpose([expected[name] for name in moving]), atol=1e-5)
-    assert data["sets"] == ["capsules"]
+    assert data["sets"] == ["collision"]
     assert [body["name"] for body in data["bodies"] if body["set"] == "scene"] == list(reach.world.scene.names)
     for link, part in robot_parts(robot).items():
         vertices = part.corners.reshape(-1, 3)
-        (body,) = [each for each in data["bodies"] if each["name"] == link and each["set"] == "capsules"]
+        (body,) = [each for each in data["bodies"] if each["name"] == link and each["set"] == "collision"]
         kept = np.frombuffer(base64.b64decode(body["v"]), "<f4").reshape(-1, 3)
         np.testing.assert_allclose([kept.min(0), kept.max(0)], [vertices.min(0), vertices.max(0)], atol=1e-5)
         triangles = np.frombuffer(base64.b64decode(body["t"]), "<u4")

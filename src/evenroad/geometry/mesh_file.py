@@ -8,8 +8,10 @@ import os
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_positive
@@ -19,6 +21,11 @@ from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry.mesh import TriangleMesh, merged
 from evenroad.geometry.pose import Pose
 
+if TYPE_CHECKING:
+    from trimesh import Trimesh
+
+Colours: TypeAlias = npt.NDArray[np.uint8]
+"""A colour for each triangle, (t, 3): red, green and blue."""
 GLTF = (".glb", ".gltf")
 """Suffixes of glTF. Its specification says that y is up."""
 Y_UP = Pose.from_rpy((0.0, 0.0, 0.0), (0.5 * math.pi, 0.0, 0.0))
@@ -59,38 +66,60 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     return meshes[0] if len(meshes) == 1 else replace(merged(meshes), name=meshes[0].name)
 
 
+class ColouredMesh(NamedTuple):
+    """A mesh, and a colour for each of its triangles; None if its file has no colours."""
+
+    mesh: TriangleMesh
+    colours: Colours | None
+
+
+def load_coloured(path: str | os.PathLike[str]) -> list[ColouredMesh]:
+    """Read the objects of a file with the colours of their materials; errors as `load_mesh`."""
+    return [ColouredMesh(mesh, colours) for _, mesh, colours in _load(Path(path), 1.0, with_colours=True)]
+
+
 def load_objects(path: str | os.PathLike[str], *, scale: float = 1.0) -> list[tuple[str, TriangleMesh]]:
     """Read the objects of a file, each with its name, where its scene has it; parameters and errors as `load_mesh`."""
-    factor = require_positive("scale", scale)
-    file = Path(path)
+    return [(name, mesh) for name, mesh, _ in _load(Path(path), require_positive("scale", scale))]
+
+
+def _load(file: Path, factor: float, *, with_colours: bool = False) -> list[tuple[str, TriangleMesh, Colours | None]]:
+    """Return name, mesh and colours of each object of a file that has triangles."""
     if not file.is_file():
         raise BrokenFile(f"the mesh {file} is missing")
     if file.suffix.lower() == ".bt":
         from evenroad.geometry.octomap import read_octomap
 
         vertices, triangles = read_octomap(file)
-        return [(file.stem, TriangleMesh(factor * vertices, triangles, file.name))]
-    unit, parts = _parts(file)
-    if not any(len(triangles) for _, _, triangles in parts):
+        return [(file.stem, TriangleMesh(factor * vertices, triangles, file.name), None)]
+    unit, parts = _parts(file, with_colours)
+    if not any(len(part.triangles) for part in parts):
         raise BrokenFile(f"the mesh {file} is empty or cut off: a body without triangles would never collide")
-    if file.suffix.lower() == ".ply" and _is_cut_off(file.read_bytes(), len(parts[0][2])):
+    if file.suffix.lower() == ".ply" and _is_cut_off(file.read_bytes(), len(parts[0].triangles)):
         raise BrokenFile(f"the mesh {file} is cut off, or its header does not announce what there is")
     if not (math.isfinite(unit) and unit > 0.0):
         raise BrokenFile(f"the mesh {file} must have a unit of a finite length > 0, got {unit:g} m")
     try:
         return [
-            (name, TriangleMesh(factor * unit * vertices, triangles, file.name))
-            for name, vertices, triangles in parts
-            if len(triangles)
+            (part.name, TriangleMesh(factor * unit * part.vertices, part.triangles, file.name), part.colours)
+            for part in parts
+            if len(part.triangles)
         ]
     except InvalidValue as error:
         raise BrokenFile(f"the mesh {file} is broken: {error}") from error
 
 
-def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
-    """Return a file's unit [m], and name, vertices and triangles of each of its objects."""
+class _Object(NamedTuple):
+    name: str
+    vertices: Floats
+    triangles: Ints
+    colours: Colours | None = None
+
+
+def _parts(file: Path, with_colours: bool) -> tuple[float, list[_Object]]:
+    """Return a file's unit [m], and its objects."""
     if file.suffix.lower() == ".stl" and (corners := _binary_stl(file.read_bytes())) is not None:
-        return 1.0, [(file.stem, corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))]
+        return 1.0, [_Object(file.stem, corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))]
     try:
         import trimesh
 
@@ -108,7 +137,12 @@ def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
                 " cloud in a file of their own"
             )
         return unit, [
-            (str(each.metadata["node"]), np.array(each.vertices, dtype=float), np.array(each.faces, dtype=np.int64))
+            _Object(
+                str(each.metadata["node"]),
+                np.array(each.vertices, dtype=float),
+                np.array(each.faces, dtype=np.int64),
+                _colours_of(each) if with_colours else None,
+            )
             for each in solid
         ]
     except ImportError as error:
@@ -118,6 +152,20 @@ def _parts(file: Path) -> tuple[float, list[tuple[str, Floats, Ints]]]:
     # trimesh's readers raise whatever their parsers do, down to struct.error and KeyError.
     except Exception as error:
         raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
+
+
+def _colours_of(mesh: Trimesh) -> Colours | None:
+    """Return the colours of a mesh's triangles; those of a texture are the means of its corners."""
+    look = mesh.visual
+    if not look.defined:
+        return None
+    if look.kind == "texture":
+        image = getattr(look.material, "image", getattr(look.material, "baseColorTexture", None))
+        if image is None or look.uv is None:
+            return np.broadcast_to(np.array(look.material.main_color[:3], dtype=np.uint8), (len(mesh.faces), 3))
+        look = look.to_color()
+        look.mesh = mesh
+    return np.array(look.face_colors[:, :3], dtype=np.uint8)
 
 
 def _files_beside(file: Path) -> object:

@@ -200,13 +200,17 @@ def _model_of(request: _Request, progress: Callable[[int, int, str], None] | Non
 
 def read_robot(file: RobotFile) -> RobotDescription:
     """Return what the file of a robot says: an MJCF with the suffix ``.xml`` or ``.mjcf``, else a URDF or xacro."""
-    is_mjcf = file.path.suffix in (".xml", ".mjcf") and outermost(file.path) != "robot"
-    if not is_mjcf:
+    if not is_mjcf(file):
         return read_urdf(file)
     # Imported late: most robots are URDFs.
     from evenroad.loading.mjcf import read_mjcf
 
     return read_mjcf(file)
+
+
+def is_mjcf(file: RobotFile) -> bool:
+    """Return whether a robot's file is an MJCF."""
+    return file.path.suffix in (".xml", ".mjcf") and outermost(file.path) != "robot"
 
 
 def _build(

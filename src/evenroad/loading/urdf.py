@@ -46,7 +46,7 @@ def read_urdf(source: Path | RobotFile) -> RobotDescription:
         root.get("name", file.path.stem),
         [*names, *(joint.child for joint in joints if joint.of and joint.child not in names)],
         joints,
-        [_shape(link.attrib["name"], each, file) for link in links for each in link.findall("collision")],
+        [link_shape(link.attrib["name"], each, file) for link in links for each in link.findall("collision")],
         str(file.path),
         drawn_only(root),
         notes + soft_notes(joints),
@@ -101,7 +101,8 @@ def _axis(joint: Element, where: str) -> tuple[float, float, float]:
     return (x, y, z)
 
 
-def _shape(link: str, collision: Element, file: RobotFile) -> Shape:
+def link_shape(link: str, collision: Element, file: RobotFile) -> Shape:
+    """Return the shape of a checked ``<collision>``; BrokenFile if its mesh is not found."""
     pose, (shape,) = _pose(collision), collision.iterfind("geometry/*")
     if shape.tag == "mesh":
         x, y, z = np.broadcast_to(_numbers(shape, "scale", (1.0,)), 3).tolist()

@@ -48,15 +48,17 @@ _SINGLE = ("origin", "axis", "limit", "safety_controller", "mimic", "parent", "c
 def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
     """Return the ``<robot>`` element of a URDF or xacro without what collision checking does not need, and notes.
 
-    Numbers are rewritten with blanks between them; a ``<visual>`` is kept without its content.  Raises BrokenFile if
+    Numbers are rewritten with blanks between them; a ``<visual>`` is kept without its content, unless the file is read
+    as drawn: then it is the link's body, with its ``<material>``.  Raises BrokenFile if
     the file is missing, not XML or not a URDF, or an element lacks a piece; InvalidValue if an attribute does not hold
     the numbers that it must.
     """
     path, notes = file.path, list[str]()
     root = read_robot_xml(file)
     require_understood(root, ROBOT, str(path), notes)
+    ignored = IGNORED - {"material"} if file.as_drawn else IGNORED
     for parent in list(root.iter()):
-        parent[:] = [child for child in parent if child.tag not in IGNORED]
+        parent[:] = [child for child in parent if child.tag not in ignored]
     drawn = []
     for link in root.findall("link"):
         visuals = link.findall("visual")

@@ -17,8 +17,9 @@ from evenroad.planning.result import PlanResult, Status
 from evenroad.robots.kinematics import link_poses, tip_links
 from evenroad.space.path import configuration_at
 from evenroad.viz import style
-from evenroad.viz.bodies import joined, obstacle_part, rgb, robot_parts
+from evenroad.viz.bodies import obstacle_part, robot_parts
 from evenroad.viz.camera import Camera, best_camera
+from evenroad.viz.parts import joined, rgb
 from evenroad.viz.sheet import Entry, Sheet, save_png
 from evenroad.viz.stage import Part, Stage, part_of
 from evenroad.viz.surfaces import tube
@@ -171,7 +172,7 @@ def _moving(world: ArmWorld, result: PlanResult) -> frozenset[str]:
 def _few(part: Part) -> Part:
     """Return some of a body's triangles."""
     step = len(part.corners) // _POINTS + 1
-    return replace(part, corners=part.corners[::step], normals=part.normals[::step])
+    return replace(part, corners=part.corners[::step], normals=part.normals[::step], colour=style.ARM[0])
 
 
 def _corners(parts: Iterable[Part]) -> Floats:

@@ -25,7 +25,8 @@ from evenroad.robots.kinematics import joint_values, tip_links
 from evenroad.scenes.scene import Obstacle
 from evenroad.space.path import configuration_at
 from evenroad.viz.arm import chosen_camera, kept_distance
-from evenroad.viz.bodies import CAPSULES, COLLISION, VISUAL, indexed, obstacle_part, robot_sets
+from evenroad.viz.bodies import COLLISION, obstacle_part, robot_sets
+from evenroad.viz.parts import by_colour, indexed
 from evenroad.viz.result import plot_map
 from evenroad.viz.stage import Part
 from evenroad.world import MeasuresPaths, World
@@ -60,7 +61,8 @@ def save_page(
     result : PlanResult
         A plan that knows its world: an arm in its scene, or a disk or a car on a map.
     file : RobotFile, optional
-        The robot's file, whose visual and collision geometry can then be shown; capsules always can.
+        The robot's file, which says how the robot looks.  Default: the one that it was loaded from in this process, if
+        any; of a robot without a file, collision bodies are shown.
     timed : tuple of ndarray, optional
         Times from 0 on, (n,) [s], and the configurations at them, (n, dim), as of a trajectory.  Default: even speed,
         four seconds.
@@ -155,12 +157,13 @@ def arm_data(world: ArmWorld, result: PlanResult, file: RobotFile | None) -> Dat
         }
         for i, joint in enumerate(robot.joints)
     ]
-    sets = robot_sets(robot, file)
+    shown = robot_sets(robot, file)
     bodies = [obstacle_data(each) for each in world.scene.obstacles]
-    for name, links in sets.items():
-        bodies += [_body_data(part, number[link], name, link) for link, part in links.items()]
+    for name, links in shown.sets.items():
+        of_colour = [(link, each) for link, part in links.items() for each in by_colour(part)]
+        bodies += [_body_data(part, number[link], name, link) for link, part in of_colour]
     parts = [obstacle_part(each) for each in world.scene.obstacles]
-    camera, _ = chosen_camera(result, world, sets[CAPSULES], parts)
+    camera, _ = chosen_camera(result, world, shown.sets[COLLISION], parts)
     x, y, _ = camera.eye - camera.look_at
     return {
         "kind": "arm",
@@ -169,7 +172,8 @@ def arm_data(world: ArmWorld, result: PlanResult, file: RobotFile | None) -> Dat
         "joints": joints,
         "links": len(robot.links),
         "tips": [number[tip] for tip in tip_links(robot)],
-        "sets": [name for name in (VISUAL, COLLISION, CAPSULES) if name in sets],
+        "sets": list(shown.sets),
+        "note": shown.note,
         "bodies": bodies,
         "turn": round(float(np.arctan2(y, x)), 3),
     }
@@ -190,7 +194,7 @@ def _body_data(part: Part, link: int, kind: str, name: str) -> Data:
         "link": link,
         "set": kind,
         "name": name,
-        "colour": [round(each / 255.0, 3) for each in part.colour],
+        "colour": [round(each / 255.0, 3) for each in part.colours[0].tolist()],
         "v": _coded(corners.astype("<f4")),
         "n": _coded(normals),
         "t": _coded(triangles.reshape(-1).astype("<u4")),

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 from PIL import Image
 
 from evenroad._arrays import Floats, Ints, unique_rows
@@ -14,6 +16,8 @@ from evenroad.viz import style
 from evenroad.viz.camera import Camera
 from evenroad.viz.surfaces import Surface
 
+Colour: TypeAlias = tuple[int, int, int] | npt.NDArray[np.int16]
+"""Red, green and blue, up to 255: of a whole body, or of each of its triangles, (t, 3)."""
 _CREASE = 0.75
 """Cosine of the angle between two faces beyond which their edge is sharp."""
 
@@ -28,10 +32,15 @@ class Part:
 
     corners: Floats
     normals: Floats
-    colour: tuple[int, int, int]
+    colour: Colour
     opacity: float = 1.0
     hidden: float = 0.0
     closed: bool = False
+
+    @property
+    def colours(self) -> npt.NDArray[np.int16]:
+        """The colour of each triangle, (t, 3)."""
+        return np.broadcast_to(np.asarray(self.colour, dtype=np.int16), (len(self.corners), 3))
 
     def moved(self, pose: Floats) -> Part:
         """Return it moved by a transform, (4, 4)."""
@@ -43,15 +52,16 @@ class Part:
         return replace(self, corners=corners.reshape(shape), normals=normals.reshape(shape))
 
 
-def part_of(surface: Surface, colour: tuple[int, int, int], *, closed: bool = False) -> Part:
+def part_of(surface: Surface, colour: Colour, *, closed: bool = False) -> Part:
     """Return a body of its surface, with normals that are smooth except at sharp edges."""
     vertices, triangles = surface
     corners = vertices[triangles]
     faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     sizes = np.linalg.norm(faces, axis=1)
     # Triangles without an area, as at the pole of a ball, show nothing.
-    corners, faces, triangles = (each[sizes > 0.0] for each in (corners, faces, triangles))
-    units = faces / sizes[sizes > 0.0, np.newaxis]
+    is_seen = sizes > 0.0
+    corners, faces, triangles = (each[is_seen] for each in (corners, faces, triangles))
+    units = faces / sizes[is_seen, np.newaxis]
     _, same = unique_rows(np.round(vertices, 6))
     at = same[triangles].reshape(-1)
     # Corners in the order of their vertex: pairs of faces at one vertex are pairs within its run.
@@ -65,6 +75,7 @@ def part_of(surface: Surface, colour: tuple[int, int, int], *, closed: bool = Fa
     for axis in range(3):
         normals[:, axis] = np.bincount(one[smooth], faces[other[smooth] // 3, axis], len(at))
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-15)
+    colour = colour if isinstance(colour, tuple) else colour[is_seen]
     return Part(corners, normals.reshape(-1, 3, 3), colour, closed=closed)
 
 
@@ -101,7 +112,7 @@ class Stage:
             self._studio,
             np.concatenate([np.zeros((0, 3, 3)), *(part.corners for part in drawn)]),
             np.concatenate([np.zeros((0, 3, 3)), *(part.normals for part in drawn)]),
-            np.repeat(np.array([part.colour for part in drawn], dtype=np.float64).reshape(-1, 3), counts, axis=0),
+            np.concatenate([np.zeros((0, 3)), *(part.colours for part in drawn)]),
             # Faces that look away are seen through nothing that is translucent, either.
             np.repeat(np.array([part.closed or part.opacity < 1.0 for part in drawn], dtype=np.bool_), counts),
             sum(len(part.corners) for part in layers[0][:see_through]),

@@ -1,0 +1,107 @@
+"""The looks of a robot: shapes and colours that its file draws, and what stands for those that cannot be read."""
+
+import logging
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.loading.load import load_model
+from evenroad.viz.bodies import robot_parts, robot_sets
+from evenroad.viz.parts import by_colour
+from evenroad.viz.player import arm_data
+
+CUBE = '<geometry><box size="0.1 0.1 0.1"/></geometry>'
+BALL = "<collision><geometry><sphere radius='0.2'/></geometry></collision>"
+TRIANGLES = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 4\n"
+MATERIALS = "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n"
+COLLADA = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="1" name="metre"/><up_axis>Z_UP</up_axis></asset>
+<library_effects><effect id="green"><profile_COMMON><technique sid="t"><lambert>
+<diffuse><color>0 1 0 1</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#green"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#a" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1" material="s"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="s" target="#m"/></technique_common></bind_material></instance_geometry></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+
+
+@pytest.fixture
+def arm(tmp_path):
+    """A function from what is drawn of a link `tip`, whose collision geometry is a ball, to the robot."""
+
+    def made(visuals, beside=""):
+        (tmp_path / "arm.urdf").write_text(
+            f'<robot name="arm">{beside}<link name="base">{BALL}</link><link name="tip">{visuals}{BALL}</link>'
+            '<joint name="turn" type="revolute"><parent link="base"/><child link="tip"/><origin xyz="0 0 1"/>'
+            '<axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>'
+        )
+        return load_model(tmp_path / "arm.urdf")
+
+    return made
+
+
+def colours(model):
+    """Return the colours of the tip as it is drawn, each once."""
+    part = robot_parts(model.robot, model.file)["tip"]
+    return sorted({tuple(row) for row in part.colours.tolist()})
+
+
+def mesh(name):
+    return f'<visual><geometry><mesh filename="{name}" scale="0.1 0.1 0.1"/></geometry></visual>'
+
+
+def test_materials_of_a_urdf_colour_what_they_are_of_by_name_or_in_place(arm):
+    beside = '<material name="steel"><color rgba="0.2 0.4 0.6 1"/></material>'
+    own = '<material name=""><color rgba="1 0.5 0 1"/></material>'
+    model = arm(f'<visual>{CUBE}<material name="steel"/></visual><visual>{CUBE}{own}</visual>', beside)
+    assert colours(model) == [(51, 102, 153), (255, 128, 0)]
+    assert [len(part.corners) for part in by_colour(robot_parts(model.robot, model.file)["tip"])] == [12, 12]
+
+
+@pytest.mark.parametrize("rgba", ["", "red", "nan 0 0 1", "1"])
+def test_a_colour_that_is_none_is_as_if_there_were_none(arm, rgba):
+    bare = colours(arm(f"<visual>{CUBE}</visual>"))
+    assert colours(arm(f'<visual>{CUBE}<material name="m"><color rgba="{rgba}"/></material></visual>')) == bare
+
+
+def test_what_is_wholly_transparent_is_not_drawn(arm):
+    clear = '<material name="clear"><color rgba="0 1 0 0"/></material>'
+    model = arm(f'<visual>{CUBE}</visual><visual><geometry><sphere radius="0.4"/></geometry>{clear}</visual>')
+    assert np.abs(robot_parts(model.robot, model.file)["tip"].corners).max() == pytest.approx(0.05)
+
+
+def test_an_obj_has_the_colours_of_its_materials(arm, tmp_path):
+    (tmp_path / "tip.obj").write_text(f"mtllib tip.mtl\n{TRIANGLES}")
+    (tmp_path / "tip.mtl").write_text(MATERIALS)
+    model = arm(mesh("tip.obj"))
+    assert colours(model) == [(0, 0, 255), (255, 0, 0)]
+    data = arm_data(er.ArmWorld(model.robot), er.plan(er.ArmWorld(model.robot), [0], [0.5]), model.file)
+    shown = [body["colour"] for body in data["bodies"] if (body["set"], body["name"]) == ("visual", "tip")]
+    assert sorted(shown) == [[0, 0, 1], [1, 0, 0]]
+    (tmp_path / "tip.mtl").write_text(MATERIALS.replace("0 0 1", "0 1 1"))
+    assert colours(model) == [(0, 255, 255), (255, 0, 0)]
+
+
+def test_a_dae_has_the_colours_of_its_materials(arm, tmp_path):
+    pytest.importorskip("collada")
+    (tmp_path / "tip.dae").write_text(COLLADA)
+    assert colours(arm(mesh("tip.dae"))) == [(0, 255, 0)]
+
+
+def test_collision_bodies_stand_for_drawings_that_cannot_be_read_and_one_line_says_so(arm, caplog):
+    model = arm(mesh("missing.obj"))
+    with caplog.at_level(logging.WARNING, "evenroad"):
+        shown = robot_sets(model.robot, model.file)
+    (record,) = caplog.records
+    assert "missing.obj" in record.getMessage()
+    assert "\n" not in record.getMessage()
+    assert "missing.obj" in shown.note
+    assert next(iter(shown.sets)) == "collision"
+    assert np.abs(shown.sets["collision"]["tip"].corners).max() == pytest.approx(0.2)
