@@ -94,6 +94,24 @@ def test_every_command_that_a_page_names_exists(page):
     assert "git switch" not in text
 
 
+NAMED = [
+    (_named(path), module, options)
+    for path in [*PAGES, ROOT / "CONTRIBUTING.md", *sorted((ROOT / "studies" / "benchmarks").glob("*.py"))]
+    for text in (path.read_text().replace("\\\n", " "),)
+    for module, words in re.findall(r"python3?\s+-m\s+((?:studies|evenroad)[\w.]*\w)((?:\s+[^`\s#(;]+)*)", text)
+    if (options := re.findall(r"\s(--[a-z][\w-]*)", words.split(" -m ")[0]))
+]
+"""Page, module and options of each benchmark that a page, or a benchmark's own text, runs with options."""
+
+
+@pytest.mark.parametrize(("page", "module", "options"), NAMED)
+def test_every_option_of_a_benchmark_that_a_page_names_is_read_there(page, module, options):
+    source = _source(module).read_text()
+    shared = re.findall(r"from (studies\.benchmarks\.\w+) import", source)
+    read = "".join([source, *(_source(each).read_text() for each in shared)])
+    assert [each for each in options if f'"{each}"' not in read] == [], f"{page} names them"
+
+
 OTHERS = ("venv", "pip", "build", "pytest", "mypy")
 """Modules of other people that pages run."""
 

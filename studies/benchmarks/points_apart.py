@@ -112,7 +112,9 @@ def main() -> None:
     parser.add_argument("--use", choices=[use.name.lower() for use in Use], default="tuning")
     parser.add_argument("--family", choices=FAMILIES, default="apart")
     parser.add_argument("-d", type=int, nargs="*", help="dimensions; default: all of the family")
-    parser.add_argument("-n", type=int, help="points; default: eight numbers about those of the calibration")
+    numbers = parser.add_mutually_exclusive_group()
+    numbers.add_argument("-n", type=int, help="points; default: eight numbers about those of the calibration")
+    numbers.add_argument("--about", type=int, help="eight numbers about this one")
     parser.add_argument("--worlds", type=int, default=60, help="of each kind")
     parser.add_argument("--first", type=int, default=0, help="number of the first world")
     parser.add_argument("--kinds", nargs="*", help="of worlds; default: all of the family")
@@ -123,7 +125,7 @@ def main() -> None:
     use, rows = Use[options.use.upper()], []
     worlds = range(options.first, options.first + options.worlds)
     for d in options.d or (ARM_JOINTS if options.family == "arms" else apart.COUNTS):
-        n = options.n or number_of_points(options.family, d)
+        n = options.n or options.about or number_of_points(options.family, d)
         counts = [n] if options.n else [round(share * n) for share in TIMES]
         names = available(options.only, counts[0], d)
         kinds = problems(use, d, options.family)
