@@ -183,9 +183,8 @@ def main() -> None:
             continue
         if time.monotonic() > end:
             break
-        limit = min(options.limit, end - time.monotonic() + 10.0)
         more = ["--seconds", str(options.seconds), *(["--keep", str(options.keep)] if options.keep else [])]
-        _ask(path, sorted(asked), more, limit, options.out)
+        _ask(path, sorted(asked), more, options.limit, options.out)
         rows = _read(options.out)
     print(summary(rows))
 

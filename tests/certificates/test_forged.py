@@ -74,6 +74,17 @@ def test_a_mesh_whose_triangles_come_twice_is_solid(doubled, tmp_path):
         assert codes(sources, written(sources, 24 if doubled else 12)) == (code, code)
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_two_triangles_of_the_same_corners_are_one_that_leaves_a_mesh_open(times, tmp_path):
+    sources = files_in(tmp_path, INSIDE)
+    cube = trimesh.load(tmp_path / "cube.stl")
+    flap = [[[0.5, 0.5, 0.5], [0.6, 0.5, 0.5], [0.5, 0.6, 0.5]]] * times
+    corners = np.concatenate([cube.triangles, flap]).reshape(-1, 3)
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    trimesh.Trimesh(corners, faces, process=False).export(tmp_path / "cube.stl")
+    assert codes(sources, written(sources, 12 + times)) == (ACCEPTED, ACCEPTED)
+
+
 @pytest.mark.parametrize(("kind", "mimic"), [("fixed", ""), ("floating", ""), ("revolute", '<mimic joint="slide"/>')])
 def test_only_a_joint_that_could_move_by_itself_is_held(kind, mimic, tmp_path):
     sources = files_in(tmp_path, FAR)

@@ -55,7 +55,7 @@ def test_a_ball_is_inside_if_all_of_its_surface_is(kind):
         shape = primitive(kind, SIZES[kind]).at(placed)
     body, sphere = Body("body", 1, [shape], False), directions(rng, 3_000)
     for centre, radius in zip(rng.uniform(-0.2, 0.2, (150, 3)), rng.uniform(0.001, 0.12, 150), strict=True):
-        inside = is_ball_inside(body, pose.apply(centre[np.newaxis])[0], radius, {})
+        inside = is_ball_inside(body, pose.apply(centre[np.newaxis])[0], radius)
         truly = holds("box" if kind == "mesh" else kind, centre + radius * sphere).all()
         assert truly or not inside
         assert inside or not holds("box" if kind == "mesh" else kind, centre + (radius + 0.01) * sphere).all()

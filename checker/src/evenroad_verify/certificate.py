@@ -84,13 +84,14 @@ def read_certificate(data: bytes) -> Certificate:
     return read_file(data, MAGIC, _certificate)
 
 
-def read_file(data: bytes, magic: bytes, read: Callable[[dict[str, list[str]], bytes], _Read]) -> _Read:
+def read_file(data: bytes, magic: bytes, read: Callable[[dict[str, list[str]], memoryview], _Read]) -> _Read:
     """Return what `read` makes of the values of the header's lines, by their keys, and of the bytes that follow."""
     demand(data.startswith(magic), "this is no certificate of version 1")
-    text, _, body = data[len(magic) :].partition(b"\n\n")
-    said: dict[str, list[str]] = {}
+    end = data.find(b"\n\n", len(magic))
+    demand(end > 0, "its header does not end")
+    body, said = memoryview(data)[end + 2 :], dict[str, list[str]]()
     try:
-        for line in text.decode("utf-8").split("\n"):
+        for line in data[len(magic) : end].decode("utf-8").split("\n"):
             key, _, value = line.partition(" ")
             said.setdefault(key, []).append(value)
         return read(said, body)
@@ -99,7 +100,7 @@ def read_file(data: bytes, magic: bytes, read: Callable[[dict[str, list[str]], b
         raise
 
 
-def _certificate(said: dict[str, list[str]], body: bytes) -> Certificate:
+def _certificate(said: dict[str, list[str]], body: memoryview) -> Certificate:
     once = ("degree", "motions", "answers", "directions")
     head, tolerance = head_of(said, once, ("axis", "point", "tolerance")), said.get("tolerance", ["0"])
     demand(len(tolerance) == 1, "its header has a line twice")
@@ -142,7 +143,9 @@ def head_of(said: dict[str, list[str]], once: tuple[str, ...], others: tuple[str
     }
 
 
-def tables_of(said: dict[str, list[str]], body: bytes, sizes: list[int]) -> tuple[list[bytes], tuple[bytes, ...]]:
+def tables_of(
+    said: dict[str, list[str]], body: memoryview, sizes: list[int]
+) -> tuple[list[memoryview], tuple[bytes, ...]]:
     """Return the tables of some sizes that follow a header, and the files that it carries."""
     size, carries = sum(sizes), said.keys() & {"robot", "scene"}
     demand(len(body) == size or (carries and len(body) > size), "its length is not what its header says")
@@ -150,13 +153,13 @@ def tables_of(said: dict[str, list[str]], body: bytes, sizes: list[int]) -> tupl
     return [body[begin:end] for begin, end in itertools.pairwise(stops)], tuple(_files(body[size:]))
 
 
-def _files(data: bytes) -> Iterator[bytes]:
+def _files(data: memoryview) -> Iterator[bytes]:
     """Yield the files at the end of a certificate, each after its length in 8 bytes."""
     at = 0
     while at < len(data):
         size = int.from_bytes(data[at : at + 8], "little")
         demand(len(data) >= at + 8 + size, "a file that it carries is cut off")
-        yield data[at + 8 : at + 8 + size]
+        yield bytes(data[at + 8 : at + 8 + size])
         at += 8 + size
 
 
@@ -201,7 +204,7 @@ def _named(lines: list[str]) -> dict[str, float]:
     return {name: number(value) for value, _, name in pairs}
 
 
-def _unpacked(data: bytes, count: int) -> npt.NDArray[np.uint8]:
+def _unpacked(data: memoryview, count: int) -> npt.NDArray[np.uint8]:
     """Return `count` answers of 0 to 5, of which a byte holds three."""
     packed = np.frombuffer(data, np.uint8)
     demand(not (packed > 215).any(), "an answer is unknown")

@@ -63,7 +63,7 @@ def read_no_path(data: bytes) -> NoPath:
         return read_file(data, MAGIC, _no_path)
 
 
-def _no_path(said: dict[str, list[str]], body: bytes) -> NoPath:
+def _no_path(said: dict[str, list[str]], body: memoryview) -> NoPath:
     once = ("goals", "balls", "witnesses")
     head = head_of(said, once, ("cells", "position", "pose"))
     dim = len(head["joints"])
@@ -176,11 +176,11 @@ def _witnesses(
     read: NoPath, inputs: Inputs, bodies: list[Body], touching: set[frozenset[str]]
 ) -> tuple[list[tuple[Spot, tuple[int, Solid | Spot], float]], tuple[tuple[str, str], ...]]:
     """Return balls, solids and what to keep between them, and the names of bodies; Refused where a pair may touch."""
-    spots, pieces = [], dict[int, list[tuple[Floats, bool]]]()
+    spots = []
     for number, *centre, radius in read.balls.tolist():
         demand(number < len(bodies), "a ball is in an unknown body")
         body = bodies[int(number)]
-        demand(is_ball_inside(body, np.array(centre), radius, pieces), f"a ball is not inside of {body.name}")
+        demand(is_ball_inside(body, np.array(centre), radius), f"a ball is not inside of {body.name}")
         spots.append(Spot(body.frame, np.array(centre), radius))
     solids: list[tuple[int, Solid | Spot | None]] = [
         (i, solid_of(shape)) for i, body in enumerate(bodies) for shape in body.shapes if not shape.surface

@@ -79,8 +79,8 @@ class Nodes:
             self._corners[node] = [(shape, _points(shape, rows)) for shape, rows in self.parts[node]]
         most = np.full(len(along), -np.inf)
         for shape, points in self._corners[node]:
-            step = max(1, _MOST // len(points))
-            far = np.concatenate([(points @ along[i : i + step].T).max(0) for i in range(0, len(along), step)])
+            step = max(1, _MOST // points.shape[1])
+            far = np.concatenate([(along[i : i + step] @ points).max(1) for i in range(0, len(along), step)])
             far += shape.radius * np.linalg.norm(along, axis=1)
             if shape.disc:
                 across = along - np.outer(along @ shape.axis, shape.axis)
@@ -90,10 +90,9 @@ class Nodes:
 
 
 def _points(shape: Shape, rows: Ints) -> Floats:
-    """Return the points that some elements have for corners, (m, 3)."""
+    """Return the points that some elements have for corners, (3, m)."""
     corners = shape.corners[rows]
-    if 8 * corners.size < len(shape.points):
-        return shape.points[np.unique(corners)]
     used = np.zeros(len(shape.points), bool)
     used[corners] = True
-    return shape.points[used]
+    some = np.unique(corners) if 8 * corners.size < len(used) else np.flatnonzero(used)
+    return np.ascontiguousarray(shape.points.take(some, axis=0).T)

@@ -10,8 +10,8 @@ from evenroad_verify.cells import Ranges
 from evenroad_verify.claim import LEAST, Body
 from evenroad_verify.errors import Floats, Ints, demand
 from evenroad_verify.frames import Frames
+from evenroad_verify.pieces import any_inside
 from evenroad_verify.shapes import Shape
-from evenroad_verify.solids import are_inside, pieces_of
 
 
 @dataclass(frozen=True)
@@ -52,18 +52,17 @@ def solid_of(shape: Shape) -> Solid | None:
     return Solid(0.5 * (corner[0] + corner[-1]), axes, half, shape.radius, False)
 
 
-def is_ball_inside(body: Body, centre: Floats, radius: float, pieces: dict[int, list[tuple[Floats, bool]]]) -> bool:
-    """Return whether a ball is inside of one of a body's shapes, or inside of a closed piece of its surfaces.
-
-    `pieces` keeps those that are known.
-    """
+def is_ball_inside(body: Body, centre: Floats, radius: float) -> bool:
+    """Return whether a ball is inside of one of a body's shapes, or inside of a closed piece of its surfaces."""
     for shape in body.shapes:
         solid = solid_of(shape)
         if solid is not None and solid.distances(centre[None])[0] <= -radius - LEAST:
             return True
-        within = (shape.points.min(0) < centre - radius).all() and (shape.points.max(0) > centre + radius).all()
-        for triangles, closed in pieces_of(shape, pieces) if within else []:
-            if closed and are_inside(centre[None], triangles)[0] and _nearest(triangles, centre) >= radius + LEAST:
+        for piece, point in shape.pieces.holding(centre[None]) if shape.surface else ():
+            triangles = shape.pieces.closed(piece)
+            if triangles is None or not any_inside(point, triangles):
+                continue
+            if _nearest(triangles, centre) >= radius + LEAST:
                 return True
     return False
 

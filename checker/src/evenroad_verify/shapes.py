@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from evenroad_verify.errors import Floats, Ints, Pose, number, numbers, require
+from evenroad_verify.pieces import Pieces
 
 DIMENSIONS = {
     "box": {"size": 3},
@@ -47,6 +48,11 @@ class Shape:
         places = np.ascontiguousarray(self.points.T).take(corners, axis=1)
         far = np.linalg.norm(self.points, axis=1).take(corners).max(0)
         return np.concatenate([places.mean(1), places.min(1), places.max(1), far[None]])
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """The connected pieces of a surface."""
+        return Pieces(self.points, self.corners)
 
     @property
     def reach(self) -> float:
