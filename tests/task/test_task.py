@@ -270,7 +270,10 @@ def test_a_wait_that_no_trajectory_holds_is_refused(world):
     [
         ([], "one motion or more"),
         ([Wait(1.0)], "one motion or more"),
-        (["home"], "step 0 of a task must be a motion, such as MoveTo, Attach, Detach or Wait, got 'home'"),
+        (
+            ["home"],
+            "step 0 of a task must be a motion, such as MoveTo, Attach, Detach, Open, Close or Wait, got 'home'",
+        ),
         ([Attach("cup"), MoveTo(HOME)], "unknown obstacle of step 0 of the task:? 'cup'"),
         ([MoveTo(HOME)] * 501, "one motion or more, up to 500, got 501"),
         ([Attach("can", "hand"), MoveTo(HOME)], "unknown link that takes 'can': 'hand'"),

@@ -71,7 +71,7 @@ def test_a_task_that_cannot_be_done_says_which_step_and_leaves_no_earlier_trajec
     ("old", "new", "says"),
     [
         ("wait: 0.5", "wait: soon", "step 4 in .*task.yaml: seconds must be"),
-        ("wait: 0.5", "jump: 1", "step 4 in .*: .*'jump'; known: attach, detach, move_along, .*wait"),
+        ("wait: 0.5", "jump: 1", "step 4 in .*: .*'jump'; known: attach, close, detach, move_along, .*wait"),
         ("attach: can", "attach: {object: can, hand: 1}", "step 1 in .*'hand'"),
         ("attach: can", "attach", "step 1 in .*: a step must be one of move_to: ..., move_linear"),
         ("approach: 0.1}", "approach: -0.1}", "step 0 in .*approach must be"),

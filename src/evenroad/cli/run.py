@@ -64,7 +64,7 @@ class RunTask(RobotOptions):
 
     def run(self) -> int:
         """Plan, write, report; return 0 if all steps can be done, else 1."""
-        from evenroad.trajectory.formats import format_of, save_trajectories
+        from evenroad.trajectory.formats import format_of
 
         require_positive("speed", self.speed, at_most=1.0)
         inputs = (self.task, self.limits, self.srdf, self.bodies)
@@ -72,26 +72,38 @@ class RunTask(RobotOptions):
             format_of(file)
             require_output("--out", file, inputs)
         require_certifiable(self.certificate, self.bodies, inputs, embed=self.embed)
-        world, done = self.planned()
+        done = self.planned()
         for file in self.out:
             # The trajectory of an earlier run must not pass for this one.
             file.unlink(missing_ok=True)
         rows = [("status", f"{done.status}: {done.message}"), ("time", f"{1e3 * done.timings['task']:.0f} ms")]
         if done.solved:
-            trajectory = self.timed(world, done)
-            save_trajectories(self.out, replace(trajectory, source={"task": self._record()}))
+            trajectory = self.timed(done)
+            rows += self._saved(replace(trajectory, source={"task": self._record()}), done.fingers)
             rows.append(
                 ("trajectory", f"{trajectory.duration:.3f} s, {len(trajectory.times)} states, {trajectory.proof}")
             )
-            rows += [("files", ", ".join(map(str, self.out)))] if self.out else []
-            rows += self._certified(world, done)
+            rows += self._certified(done)
         if self.json:
             print(json.dumps({"step": done.step, "cost": done.cost, **dict(rows)}, indent=2))
         else:
             print_table(rows)
         return 0 if done.solved else 1
 
-    def _certified(self, world: ArmWorld, done: TaskResult) -> list[tuple[str, str]]:
+    def _saved(self, trajectory: Trajectory, fingers: tuple[str, ...]) -> list[tuple[str, str]]:
+        """Write the trajectory to all files, a program of the arm without its fingers; return their row."""
+        from evenroad.trajectory.formats import save_trajectories
+
+        programs = [file for file in self.out if fingers and file.suffix.lower() == ".script"]
+        if programs:
+            # The controller of an arm has no fingers: the arm waits while they move.
+            arm = trajectory.only([name for name in trajectory.names if name not in fingers])
+            save_trajectories(programs, arm)
+        save_trajectories([file for file in self.out if file not in programs], trajectory)
+        alone = f"; without {', '.join(fingers)}: {', '.join(map(str, programs))}" if programs else ""
+        return [("files", ", ".join(map(str, self.out)) + alone)] if self.out else []
+
+    def _certified(self, done: TaskResult) -> list[tuple[str, str]]:
         """Write the certificates of a task, if they are wanted; return their row for the table."""
         if self.certificate is None:
             return []
@@ -100,7 +112,7 @@ class RunTask(RobotOptions):
         from evenroad.task.result import timed_parts
 
         sources, file = self.sources(self._robot(), None, self.embed), self.certificate
-        parts = timed_parts(done, self._timing(world))
+        parts = timed_parts(done, self._timing())
         files = [file.with_suffix(f".{number}{file.suffix}") for number in range(1, len(parts) + 1)]
         for (part, trajectory), each in zip(parts, files, strict=True):
             assert part.path is not None, "only of a motion that was found"
@@ -108,14 +120,14 @@ class RunTask(RobotOptions):
         named = f"{files[0]} to {files[-1]}" if len(files) > 1 else str(files[0])
         return [("certificates", f"{named} of the trajectory's motions, which evenroad-verify checks")]
 
-    def planned(self) -> tuple[ArmWorld, TaskResult]:
-        """Return the world and the plan of the task: the same for the same options."""
+    def planned(self) -> TaskResult:
+        """Return the plan of the task: the same for the same options."""
         from evenroad.task.task_file import load_task
 
         said, source = load_task(self.task), self._robot()
         scene = as_scene(said.scene if self.scene is None else self.scene) if said.scene or self.scene else Scene()
         world = ArmWorld(in_scene(self.read_robot(source).robot, scene), scene)
-        return world, said.task.plan(world, said.start, seconds=self.time, rng=self.seed)
+        return said.task.plan(world, said.start, seconds=self.time, rng=self.seed)
 
     def _robot(self) -> str:
         """Return the file or name of the robot."""
@@ -126,15 +138,13 @@ class RunTask(RobotOptions):
             raise InvalidValue(f"{self.task} names no robot: give --robot")
         return source
 
-    def timed(self, world: ArmWorld, done: TaskResult) -> Trajectory:
+    def timed(self, done: TaskResult) -> Trajectory:
         """Return the trajectory of a task that is solved."""
-        return done.trajectory(**self._timing(world))
+        return done.trajectory(**self._timing())
 
-    def _timing(self, world: ArmWorld) -> dict[str, Any]:
+    def _timing(self) -> dict[str, Any]:
         """Return the options of trajectories."""
-        from evenroad.trajectory import limits_of
-
-        return {"speed": self.speed, "limits": limits_of(world.robot, self.limits)}
+        return {"speed": self.speed, "limits": self.limits}
 
     def _record(self) -> dict[str, object]:
         """Return the options as plain values, of which `run_task_of` makes them again."""

@@ -177,7 +177,7 @@ def arm_problem(
         else:
             model = load_model(robot, **options)
             robot = model.robot
-        goals = _goal_list(goal, len(robot.group))
+        goals = goal_list(goal, len(robot.group))
         texts = [target for target in (start, *goals) if isinstance(target, str)]
         scene = placed_scene(robot, scene)
         robot = at_states(in_scene(robot, scene), texts, scene)
@@ -207,7 +207,7 @@ def problem_in(
 ) -> Problem:
     """Return the problem of an arm whose world exists; parameters and errors as :func:`evenroad.plan`."""
     robot, scene = world.robot, world.scene
-    goals = _goal_list(goal, len(robot.group))
+    goals = goal_list(goal, len(robot.group))
     first = as_configuration(robot, start, scene, name="start", degrees=reading.degrees)
     world = reaching(world, first)
     if len(goals) == 1 and not isinstance(goals[0], _NAMED):
@@ -239,16 +239,16 @@ def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading:
     require_tips(robot, goals, reading.tip, reading.frame)
 
 
-def _goal_list(goal: Goal | Sequence[Goal], dim: int) -> list[Goal]:
+def goal_list(goal: Goal | Sequence[Goal], dim: int) -> list[Goal]:
     """Return a list of the goals; a (4, 4) array is the matrix of a pose, unless the arm has four joints."""
     if isinstance(goal, np.ndarray):
         if goal.shape == (4, 4) and dim != 4:
             return [Pose.from_matrix(goal)]
-        return [each for part in goal for each in _goal_list(part, dim)] if goal.ndim in (2, 3) else [goal]
+        return [each for part in goal for each in goal_list(part, dim)] if goal.ndim in (2, 3) else [goal]
     if isinstance(goal, str | Mapping | Pose | PoseGoal):
         return [goal]
     if not isinstance(goal, Sequence) or not any(
         isinstance(each, str | Mapping | Pose | PoseGoal) or np.ndim(each) > 0 for each in goal
     ):
         return [goal]  # type: ignore[list-item]
-    return [each for part in goal for each in (_goal_list(part, dim) if isinstance(part, np.ndarray) else [part])]
+    return [each for part in goal for each in (goal_list(part, dim) if isinstance(part, np.ndarray) else [part])]

@@ -1,3 +1,5 @@
+from evenroad.task.gripper import Close as Close
+from evenroad.task.gripper import Open as Open
 from evenroad.task.result import TaskResult as TaskResult
 from evenroad.task.steps import Attach as Attach
 from evenroad.task.steps import Detach as Detach

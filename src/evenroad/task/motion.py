@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -32,7 +32,8 @@ class Motion:
     """The plans of a motion's parts, and the row of the goal that it ends at.
 
     If there is no motion, the only part says why, and `goal` is None.  `constraints` are those of its step, with the
-    name of the constrained link.  `speed` is the largest speed of the link `tip`, if its step has one [m/s].
+    name of the constrained link.  `speed` is the largest speed of the link `tip`, if its step has one [m/s].  If the
+    arm stays and `fingers` move, these are their last values, joint -> value, and the parts are plans of these joints.
     """
 
     parts: tuple[PlanResult, ...]
@@ -40,6 +41,7 @@ class Motion:
     constraints: Constraint | None = None
     speed: float | None = None
     tip: str = ""
+    fingers: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def end(self) -> Floats:
@@ -52,12 +54,12 @@ class Motion:
     def gone_on(self, at: Floats) -> Motion:
         """Return the motion shifted by whole turns to begin at the exact numbers of a configuration, (dim,)."""
         parts: list[PlanResult] = []
-        for part in self.parts:
+        for part in () if self.fingers else self.parts:
             parts.append(_turned(part, at))
             path = parts[-1].path
             assert path is not None, "only of a motion that was found"
             at = path[-1]
-        return replace(self, parts=tuple(parts))
+        return self if self.fingers else replace(self, parts=tuple(parts))
 
 
 @dataclass(eq=False)

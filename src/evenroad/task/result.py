@@ -15,9 +15,9 @@ from evenroad._call import explains_calls
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.errors import InvalidValue
 from evenroad.planning.result import PlanResult, Status
+from evenroad.task.joined import joined
 from evenroad.task.motion import Motion
 from evenroad.task.steps import Move, Step, Wait
-from evenroad.trajectory.corners import MOST_STATES
 from evenroad.trajectory.limits import Limits, TipLimits, limits_of
 from evenroad.trajectory.trajectory import Trajectory
 
@@ -83,11 +83,17 @@ class TaskResult:
         return sum(each.cost or 0.0 for each in self.parts) if self.solved else None
 
     @property
+    def fingers(self) -> tuple[str, ...]:
+        """Names of the finger joints that it moves."""
+        return tuple(dict.fromkeys(name for motion in self.motions for name in motion.fingers))
+
+    @property
     def path(self) -> Floats | None:
-        """Waypoints of all motions, (p, dim); None unless solved."""
-        if not self.solved:
+        """Waypoints of the arm in all motions, (p, dim); None unless solved, or if only fingers move."""
+        parts = [part for motion in self.motions if not motion.fingers for part in motion.parts]
+        paths = [each.path for each in parts if each.path is not None]
+        if not self.solved or not paths:
             return None
-        paths = [each.path for each in self.parts if each.path is not None]
         return np.concatenate([paths[0][:1], *(path[1:] for path in paths)])
 
     def __repr__(self) -> str:
@@ -158,11 +164,14 @@ class TaskResult:
     def trajectory(self, **options: Any) -> Trajectory:
         """Return one trajectory through all steps. It stops where the gripper acts, and where a line ends.
 
+        It is of the planned joints, and then of the finger joints that Open and Close move.  Controllers of the arm and
+        the gripper each take their part, as by ``trajectory.only(robot.group)``.
+
         Parameters
         ----------
         **options
             Options of :meth:`evenroad.PlanResult.trajectory`.  Each motion is checked in its own world, and keeps the
-            constraints of its step unless others are given.
+            constraints of its step unless others are given.  Fingers have the limits of the robot, or those of a file.
 
         Returns
         -------
@@ -176,7 +185,7 @@ class TaskResult:
         Examples
         --------
         >>> import evenroad as er
-        >>> from evenroad.task import MoveTo, Step, Wait
+        >>> from evenroad.task import MoveTo, Task, Wait
         >>> task = Task([MoveTo("inside"), Wait(0.5), MoveTo("home")])
         >>> task.plan(er.ArmWorld("ur5", "box-reach"), "home").trajectory(speed=0.5).names[0]
         'shoulder_pan_joint'
@@ -193,7 +202,7 @@ class TaskResult:
                 moving = [part for part in next(parts).parts if part.cost]
                 pauses += [pause, *[0.0] * (len(moving) - 1)] if moving else []
                 pause = 0.0 if moving else pause
-        return _joined([each for _, each in timed], [*pauses, pause] if pauses else [0.0, pause])
+        return joined([each for _, each in timed], [*pauses, pause] if pauses else [0.0, pause], self.fingers)
 
 
 def timed_parts(done: TaskResult, options: dict[str, Any]) -> list[tuple[PlanResult, Trajectory]]:
@@ -206,6 +215,11 @@ def timed_parts(done: TaskResult, options: dict[str, Any]) -> list[tuple[PlanRes
 
 def _kept(motion: Motion, part: PlanResult, options: dict[str, Any]) -> dict[str, Any]:
     """Return the options of a part's trajectory, with its motion's constraints unless others are given."""
+    if motion.fingers:
+        of_arm = {"constraints", "rounded_by_controller"} | (
+            {"limits"} if isinstance(options.get("limits"), Limits) else set()
+        )
+        return {name: value for name, value in options.items() if name not in of_arm}
     kept: dict[str, Any] = {} if motion.constraints is None else {"constraints": motion.constraints}
     if part.planner == "curve":
         kept["deviation"] = CURVE_DEVIATION
@@ -215,39 +229,3 @@ def _kept(motion: Motion, part: PlanResult, options: dict[str, Any]) -> dict[str
         push = math.inf if limits.tip is None else limits.tip.acceleration
         options = options | {"limits": replace(limits, tip=TipLimits(robot, motion.tip, motion.speed, push))}
     return kept | options
-
-
-def _joined(parts: list[Trajectory], pauses: list[float]) -> Trajectory:
-    """Return trajectories in sequence, each after its pause, and a last pause."""
-    if not parts:
-        raise InvalidValue("there is no trajectory: the arm stays where it is")
-    step = parts[0].step
-    if (seconds := sum(pauses)) > MOST_STATES * step:
-        raise InvalidValue(f"the arm would stand still for {seconds:g} s, more than {MOST_STATES} steps of {step:g} s")
-    rows: list[Floats] = []
-    at = parts[0].positions[0]
-    for part, pause in zip([*parts, None], pauses, strict=True):
-        still = np.zeros((math.ceil(pause / step - 1e-9), 3, len(at)))
-        still[:, 0] = at
-        rows.append(still)
-        if part is not None:
-            states = np.stack([part.positions, part.velocities, part.accelerations], axis=1)
-            rows.append(states[1 if len(rows) > 1 else 0 :])
-            at = part.positions[-1]
-    positions, velocities, accelerations = np.ascontiguousarray(np.concatenate(rows).transpose(1, 0, 2))
-    order = ("resolution", "certified", "exact")
-    return replace(
-        parts[0],
-        # Its parts have worlds of their own, in which other things are held.
-        world=None,
-        times=np.arange(len(positions), dtype=np.float64) * step,
-        positions=positions,
-        velocities=velocities,
-        accelerations=accelerations,
-        waypoints=np.concatenate([parts[0].waypoints[:1], *(part.waypoints[1:] for part in parts)]),
-        deviation=max(part.deviation for part in parts),
-        stops=sum(part.stops for part in parts) + len(parts) - 1,
-        highest={name: max(part.highest[name] for part in parts) for name in parts[0].highest},
-        proof=min((part.proof for part in parts), key=order.index),
-        radii=(),
-    )

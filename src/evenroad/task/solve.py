@@ -12,7 +12,7 @@ from evenroad._call import explains_calls
 from evenroad._rng import RngLike
 from evenroad._time_limit import BudgetSpent, Deadline, look_at_clock, off_the_clock, until, within
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.errors import InvalidValue, shown
+from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.planning.connector import Smooth
 from evenroad.planning.make_result import make_result
 from evenroad.planning.plan import budget_of, solve
@@ -25,6 +25,8 @@ from evenroad.poses.posture_layers import follow
 from evenroad.roadmap.budget import Budget
 from evenroad.robots.robot import ConfigurationLike
 from evenroad.task.curves import follower_of
+from evenroad.task.fingers import arm_alone, finger_leg, finger_values, moved_links, touching
+from evenroad.task.gripper import Close, OfFingers, Open
 from evenroad.task.motion import Leg, Motion, PlanBetween, along, choices
 from evenroad.task.result import TaskResult
 from evenroad.task.stage import Contacts, Stage, carrier_of, touches
@@ -94,13 +96,21 @@ class _Search:
         step = self.steps[number]
         last = not any(isinstance(each, Move) for each in self.steps[number + 1 :])
         assert isinstance(step, Move), "only steps that move are left"
-        made = self._goals(number, stage, step, last) if isinstance(step, MoveTo) else self._curve(number, stage, step)
+        match step:
+            case MoveTo():
+                made = self._goals(number, stage, step, last)
+            case Open() | Close():
+                made = self._fingers(number, stage, step)
+            case _:
+                made = self._curve(number, stage, step)
         for choice in made:
             self.tried += 1
             if isinstance(choice, PlanResult):
                 self.note(number, choice)
                 continue
             after = replace(stage, q=choice.end, near_start=frozenset())
+            if choice.motion.fingers:
+                after = stage.with_fingers(choice.motion.fingers)
             yield _Branch(after, number + 1, (*branch.legs, choice), branch.cost + choice.cost)
 
     def _acted(self, branch: _Branch) -> tuple[int, Stage]:
@@ -122,7 +132,8 @@ class _Search:
         worlds = stage.with_contacts(stage.near_start), stage.world
         problem = problem_in(self._near_goal(number, stage), stage.q, step.goal, self.reading)
         # Lines are those of the goal's tip, else of the link that attached an object last.
-        taken = [each.link for each in self.steps[:number] if isinstance(each, Attach) and each.link]
+        robot = stage.world.robot
+        taken = [carrier_of(each, robot) for each in self.steps[:number] if isinstance(each, Attach)]
         return choices(problem, worlds, step, self.reading.tip or (taken[-1] if taken else ""), last=last)
 
     def _curve(self, number: int, stage: Stage, step: AlongCurve) -> Iterator[Leg | PlanResult]:
@@ -142,9 +153,32 @@ class _Search:
             return
         yield along(world, done, Motion((), 0, speed=step.speed, tip=follower.chain.tip))
 
+    def _fingers(self, number: int, stage: Stage, step: OfFingers) -> Iterator[Leg | PlanResult]:
+        """Yield the motion of the fingers, which may touch what is taken next and what was put down last."""
+        look_at_clock()
+        where, robot, scene = f"step {number} of the task", stage.world.robot, stage.world.scene
+        values = finger_values(step, robot, scene, where)
+        contacts, depths = self._contacts(number, stage, stage.near_start)
+        if isinstance(step, Close) and step.until:
+            if step.until not in scene.names:
+                raise UnknownName.among(f"obstacle of {where}", step.until, scene.names)
+            noticed = {(link, step.until) for link in moved_links(robot, values)}
+            stops = touching(stage.with_contacts(contacts - noticed, depths), stage.q, values)
+            if stops is None:
+                why = f"the fingers close without touching {step.until!r}"
+                yield make_result(Problem(stage.world, stage.q, stage.q[None]), Status.NOT_CONNECTED, why)
+                return
+            values = stops
+        yield finger_leg(step, stage.with_contacts(contacts, depths), stage.q, values)
+
     def _near_goal(self, number: int, stage: Stage, contacts: Contacts = frozenset()) -> ArmWorld:
         """Return the world without some contacts, and without those of the line to a goal at which the gripper acts."""
-        after = next((step for step in self.steps[number + 1 :] if not isinstance(step, Wait)), None)
+        return stage.with_contacts(*self._contacts(number, stage, contacts))
+
+    def _contacts(self, number: int, stage: Stage, contacts: Contacts) -> tuple[Contacts, dict[str, float]]:
+        """Return contacts with those of the gripper's next action, and the allowed depths of these."""
+        later = (step for step in self.steps[number + 1 :] if not isinstance(step, Wait | OfFingers))
+        after = next(later, None)
         depths: dict[str, float] = {}
         if isinstance(after, Attach):
             robot = stage.world.robot
@@ -153,7 +187,7 @@ class _Search:
             depths = {after.object: after.depth}
         if isinstance(after, Detach):
             contacts |= {(after.object, name) for name in after.onto}
-        return stage.with_contacts(contacts, depths)
+        return contacts, depths
 
 
 @explains_calls
@@ -182,7 +216,8 @@ def plan_task(
         with within(rest.seconds):
             return solve(replace(problem, budget=rest, smooth=smooth, rng=rng, constraints=constraints))
 
-    search = _Search(steps, reading, deadline)
+    of_arm, world, start = arm_alone(steps, world, start, reading)
+    search = _Search(of_arm, reading, deadline)
     motions, cut = None, False
     try:
         with until(deadline):

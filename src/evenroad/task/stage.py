@@ -21,6 +21,7 @@ from evenroad.robots.robot import Robot
 from evenroad.scenes.obstacle import Obstacle
 from evenroad.scenes.scene import Scene
 from evenroad.task.contact import core_of, distance_of
+from evenroad.task.fingers import with_fingers
 from evenroad.task.steps import Attach, Detach
 
 Contacts = frozenset[tuple[str, str]]
@@ -130,6 +131,14 @@ class Stage:
         # Contacts of the object itself end, because it is no longer a body of the robot.
         others = frozenset(each for each in self.near_start if each[0] != step.object)
         return replace(self, world=_world(self, scene), near_start=others | let_go)
+
+    def with_fingers(self, values: Mapping[str, float]) -> Stage:
+        """Return the stage with the fingers at these values, joint -> value, where the arm stays."""
+        scene = self.world.scene
+        states = {name: {j: v for j, v in said.items() if j not in values} for name, said in scene.states.items()}
+        scene = replace(scene, setup=replace(scene.setup, states=states)) if states else scene
+        stage = replace(self, empty=with_fingers(self.empty, values))
+        return replace(stage, world=_world(stage, scene))
 
     def touched(self, held: str) -> list[str]:
         """Return the obstacles that a held object touches."""

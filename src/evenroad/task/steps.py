@@ -15,6 +15,7 @@ from evenroad.geometry.pose import Pose
 from evenroad.poses.cartesian_line import CartesianLine
 from evenroad.poses.constraint import Constraint, part_of
 from evenroad.poses.pose_goal import PoseGoal
+from evenroad.task.gripper import OfFingers
 
 DEPTH, REACH = 0.005, 0.1
 """Defaults of the depth of an object in its support, and of the distance at which a gripper attaches it [m]."""
@@ -285,7 +286,7 @@ class Wait:
 
 
 AlongCurve = MoveLinear | MoveAlong | MoveCircular
-Move = MoveTo | AlongCurve
+Move = MoveTo | AlongCurve | OfFingers
 Step = Move | Attach | Detach | Wait
 
 

@@ -25,8 +25,8 @@ class Task:
 
     Parameters
     ----------
-    steps : sequence of MoveTo, MoveLinear, MoveAlong, MoveCircular, Attach, Detach and Wait
-        The steps, with 1 to 500 motions.
+    steps : sequence of MoveTo, MoveLinear, MoveAlong, MoveCircular, Attach, Detach, Open, Close and Wait
+        The steps, with 1 to 500 motions, those of fingers included.
 
     Raises
     ------
@@ -48,7 +48,7 @@ class Task:
         given = tuple(steps) if isinstance(steps, list | tuple) else (steps,)
         for number, step in enumerate(given):
             if not isinstance(step, Step):
-                known = "a motion, such as MoveTo, Attach, Detach or Wait"
+                known = "a motion, such as MoveTo, Attach, Detach, Open, Close or Wait"
                 raise InvalidValue(f"step {number} of a task must be {known}, got {shown(step)}")
         motions = sum(isinstance(step, Move) for step in given)
         if not 0 < motions <= MOST_MOTIONS:

@@ -17,6 +17,7 @@ from evenroad.constraints.tip import KeepUpright
 from evenroad.errors import EvenroadError, InvalidValue, shown
 from evenroad.poses.constraint import Constraint
 from evenroad.poses.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
+from evenroad.task.gripper import Close, Open
 from evenroad.task.steps import Attach, Detach, MoveAlong, MoveCircular, MoveLinear, MoveTo, Step, Wait
 from evenroad.task.task import Task
 
@@ -54,6 +55,7 @@ def load_task(path: str | os.PathLike[str]) -> TaskFile:
           - move_to: {poses: ["0.5 -0.3 0.061 0 0 0"], tip: can, free_axis: z, retreat: 0.05,
                       approach: 0.05, away: up}
           - detach: {object: can, onto: [table]}
+          - open:                           # or a value, or {to: ..., link: hand}; also - close: {until: can}
           - wait: 0.5
           - move_linear: "0.5 -0.3 0.3 0 0 0"     # or {pose: ..., tip: tool0, frame: base_link, speed: 0.1}
           - move_along: {poses: ["0.5 -0.2 0.3 0 0 0", ...], blend: 0.02}     # or spline: true; speed
@@ -99,7 +101,8 @@ def _beside(file: Path, source: _T) -> _T | str:
 
 
 def _step(said: object) -> Step:
-    """Return a step from ``{kind: what}``."""
+    """Return a step from ``{kind: what}``, or the name of one that needs nothing."""
+    said = {said: None} if said in ("open", "close") else said
     if not isinstance(said, Mapping) or len(said) != 1:
         raise InvalidValue(f"a step must be one of {', '.join(f'{kind}: ...' for kind in _STEPS)}, got {shown(said)}")
     require_keys([str(key) for key in said], (), _STEPS, "a step")
@@ -163,6 +166,16 @@ def _detach(what: object) -> Detach:
     return Detach(**_mapping("detach", said, ("object",), ("onto",)))
 
 
+def _open(what: object) -> Open:
+    said = what if isinstance(what, Mapping) else {} if what is None else {"to": what}
+    return Open(**_mapping("open", said, (), ("to", "link")))
+
+
+def _close(what: object) -> Close:
+    said = what if isinstance(what, Mapping) else {} if what is None else {"to": what}
+    return Close(**_mapping("close", said, (), ("to", "until", "link")))
+
+
 def _wait(what: Any) -> Wait:
     return Wait(what)
 
@@ -186,5 +199,7 @@ _STEPS: dict[str, Callable[[object], Step]] = {
     "move_circular": _move_circular,
     "attach": _attach,
     "detach": _detach,
+    "open": _open,
+    "close": _close,
     "wait": _wait,
 }

@@ -158,6 +158,15 @@ class Limits:
             deceleration=slower,
         )
 
+    def of(self, columns: Sequence[int]) -> Limits:
+        """Return the limits of some joints, by their numbers, without those of torques, of a tip or along the path."""
+
+        def chosen(row: tuple[float, ...] | None) -> tuple[float, ...]:
+            return tuple(row[i] for i in columns) if row is not None else ()
+
+        jerk, deceleration = chosen(self.jerk) or None, chosen(self.deceleration) or None
+        return Limits(chosen(self.velocity), chosen(self.acceleration), jerk, deceleration=deceleration)
+
     @property
     def stopping(self) -> tuple[float, ...]:
         """Largest deceleration of each joint."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -240,6 +240,54 @@ class Trajectory(Rows, metaclass=KnowsElsewhere):
             constant = {name: np.full(len(rows), held.get(name, 0.0)) for name in self.held}
             tables.append(np.column_stack([(constant | own)[name] for name in order]))
         return order, (tables[0], tables[1], tables[2])
+
+    def only(self, names: Sequence[str]) -> Trajectory:
+        """Return the trajectory of some of its joints, such as those of one controller; all others are left out.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Joints that move, one or more, in any order.
+
+        Returns
+        -------
+        Trajectory
+            Its proof is ``unchecked``: it is that of all joints.
+
+        Raises
+        ------
+        UnknownName
+            For a joint that does not move here.
+        InvalidValue
+            For no joint, or one that is named twice.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> trajectory = er.plan("box-reach", "home", "inside", robot="ur5").trajectory()
+        >>> trajectory.only(["elbow_joint"]).positions.shape[1]
+        1
+        """
+        names = (names,) if isinstance(names, str) else tuple(names)
+        for name in names:
+            require_known("joint of the trajectory", name, self.names)
+        if not names or len(set(names)) < len(names):
+            raise InvalidValue(f"names must be one joint or more, each once, got {shown(names)}")
+        columns = [self.names.index(name) for name in names]
+        tables = ("positions", "velocities", "accelerations", "waypoints")
+        rows: dict[str, Any] = {name: getattr(self, name)[:, columns] for name in tables}
+        others = {*self.names} - {*names}
+        return replace(
+            self,
+            **rows,
+            names=names,
+            limits=self.limits.of(columns),
+            controller=tuple(name for name in self.controller if name not in others),
+            proof="unchecked",
+            # Its file and its world are of all joints.
+            source={},
+            world=None,
+        )
 
     def save(self, path: str | os.PathLike[str], order: Sequence[str] | None = None) -> None:
         """Write it in the format of the file's suffix; see :func:`evenroad.trajectory.save_trajectory`.
