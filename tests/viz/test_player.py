@@ -12,7 +12,7 @@ from evenroad.loading.robot_file import RobotFile
 from evenroad.robot import find_robot
 from evenroad.robots.kinematics import joint_values
 from evenroad.space.path import configuration_at
-from evenroad.viz.bodies import robot_parts
+from evenroad.viz.bodies import robot_sets
 from evenroad.viz.player import page_of, save_page
 from evenroad.world import MapFrame
 
@@ -33,9 +33,10 @@ def test_a_page_holds_the_joints_along_the_path_and_each_body_once(reach):
     expected = joint_values(robot, np.stack([reach.start, reach.goal]))
     moving = [joint.name for joint in robot.joints if joint.kind != "fixed"]
     np.testing.assert_allclose([first, last], np.transpose([expected[name] for name in moving]), atol=1e-5)
-    assert data["sets"] == ["collision"]
+    assert data["sets"] == ["visual", "collision"]
+    assert data["note"] == ""
     assert [body["name"] for body in data["bodies"] if body["set"] == "scene"] == list(reach.world.scene.names)
-    for link, part in robot_parts(robot).items():
+    for link, part in robot_sets(robot).sets["collision"].items():
         vertices = part.corners.reshape(-1, 3)
         (body,) = [each for each in data["bodies"] if each["name"] == link and each["set"] == "collision"]
         kept = np.frombuffer(base64.b64decode(body["v"]), "<f4").reshape(-1, 3)

@@ -174,12 +174,20 @@ def know(asked: object, files: dict[Path, tuple[int, ...]], model: RobotModel) -
 
 
 def file_of(robot: Robot) -> RobotFile | None:
-    """Return the file that a robot was loaded from in this process, if that is known."""
+    """Return the file that a robot was loaded from in this process, if that is known.
+
+    Since then it may have got other limits, by its scene, and links of what it holds.
+    """
+    joined = _joined(robot)
     for model, _ in reversed(list(_known)):
-        own = model.robot
-        if (own.name, own.links, own.joints) == (robot.name, robot.links, robot.joints):
+        if model.robot.name == robot.name and _joined(model.robot) <= joined:
             return model.file
     return None
+
+
+def _joined(robot: Robot) -> frozenset[object]:
+    """Return what a robot's joints join, and where."""
+    return frozenset((each.name, each.parent, each.child, each.xyz, each.rotation, each.axis) for each in robot.joints)
 
 
 def _asked_here(asked: object) -> object:

@@ -17,9 +17,9 @@ from evenroad.planning.result import PlanResult, Status
 from evenroad.robots.kinematics import link_poses, tip_links
 from evenroad.space.path import configuration_at
 from evenroad.viz import style
-from evenroad.viz.bodies import obstacle_part, robot_parts
+from evenroad.viz.bodies import obstacle_part, robot_parts, shape_parts
 from evenroad.viz.camera import Camera, best_camera
-from evenroad.viz.parts import joined, rgb
+from evenroad.viz.parts import joined, most_common, rgb
 from evenroad.viz.sheet import Entry, Sheet, save_png
 from evenroad.viz.stage import Part, Stage, part_of
 from evenroad.viz.surfaces import tube
@@ -87,13 +87,18 @@ def chosen_camera(
     obstacles: Sequence[Part],
     size: tuple[int, int] = MOVING,
 ) -> tuple[Camera, float]:
-    """Return the camera that sees the arm along its path, and the height of a floor below all bodies."""
+    """Return the camera that sees the arm along its path, and the height of a floor below all bodies.
+
+    The side is chosen by what collides, so that it is the same for every drawing of the links.
+    """
     shown = np.stack([result.start, result.goal]) if result.path is None else _along(result, world, 9)
-    few = {link: _few(part) for link, part in links.items()}
-    arms = np.stack([_corners(_posed(world, few, q)) for q in shown])
+    drawn, solid = (
+        np.stack([_corners(_posed(world, {link: _few(part) for link, part in parts.items()}, q)) for q in shown])
+        for parts in (links, links | shape_parts(world.robot))
+    )
     before = np.concatenate([np.zeros((0, 3, 3)), *(part.corners for part in obstacles)])
-    camera = best_camera(arms[1::3].reshape(-1, 3), before, _needed(arms, obstacles), size)
-    return camera, min([float(each[..., 2].min()) for each in (arms, before) if each.size]) - 0.005
+    camera = best_camera(solid[1::3].reshape(-1, 3), before, _needed(solid, obstacles), size)
+    return camera, min([float(each[..., 2].min()) for each in (drawn, before) if each.size]) - 0.005
 
 
 def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = None) -> Image.Image:
@@ -119,7 +124,7 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = 
         ghosts = scene.ghost(between, style.MILESTONE, _BETWEEN)
         picture = scene.picture(middle, (ghosts, start, goal, *trails))
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}{kept_distance(result)}"
-    return Sheet.of_picture(picture, title, _legend(result, world)).image
+    return Sheet.of_picture(picture, title, _legend(result, world, most_common(scene.links.values()))).image
 
 
 def kept_distance(result: PlanResult) -> str:
@@ -222,16 +227,16 @@ def _needed(arms: Floats, obstacles: Iterable[Part]) -> Floats:
     return np.concatenate(points)
 
 
-def _legend(result: PlanResult, world: ArmWorld) -> list[Entry]:
-    """Return names, colours and edge colours of the legend."""
+def _legend(result: PlanResult, world: ArmWorld, arm: tuple[int, int, int]) -> list[Entry]:
+    """Return names, colours and edge colours of the legend, with the arm in its own colour."""
     entries: list[Entry] = [("start", style.START, "white"), ("goal", style.GOAL, "white")]
     if result.path is not None:
         entries += [
-            ("on its way", style.ARM[0], "white"),
+            ("on its way", arm, "white"),
             (f"path of {', '.join(tip_links(world.robot))}", style.PATH, None),
         ]
     elif result.status in (Status.START_INVALID, Status.GOAL_INVALID):
         entries.append(("in collision", style.COLLISION, "white"))
     else:
-        entries[0] = ("start", style.ARM[0], "white")
+        entries[0] = ("start", arm, "white")
     return entries

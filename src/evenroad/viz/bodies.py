@@ -15,7 +15,7 @@ from evenroad.robots.robot import Robot
 from evenroad.scenes.scene import Obstacle
 from evenroad.viz import style
 from evenroad.viz.drawn import collision_drawing, visual_drawing
-from evenroad.viz.parts import joined, part_of_shape, parts_by_link
+from evenroad.viz.parts import PLAIN, joined, part_of_shape, parts_by_link
 from evenroad.viz.stage import Part, part_of
 
 VISUAL, COLLISION, CAPSULES = "visual", "collision", "capsules"
@@ -42,13 +42,13 @@ def robot_parts(robot: Robot, file: RobotFile | None = None) -> dict[str, Part]:
     """
     file = file_of(robot) if file is None else file
     drawn = {} if file is None else visual_drawing(file).links
-    return _coloured(robot, _shapes(robot) | drawn)
+    return _coloured(robot, shape_parts(robot) | drawn)
 
 
 def robot_sets(robot: Robot, file: RobotFile | None = None) -> RobotSets:
     """Return the different ways to show a robot; the file is as that of `robot_parts`."""
     file = file_of(robot) if file is None else file
-    shapes, capsules = _shapes(robot), _coloured(robot, parts_by_link(robot.capsules))
+    shapes, capsules = shape_parts(robot), _coloured(robot, parts_by_link(robot.capsules))
     visual, note, collides = dict[str, Part](), "", dict[str, Part]()
     if file is not None:
         visual, note = visual_drawing(file)
@@ -70,14 +70,14 @@ def obstacle_part(obstacle: Obstacle) -> Part:
     return part_of_shape(obstacle.body, style.CELL if obstacle.cell else style.THING)
 
 
-def _shapes(robot: Robot) -> dict[str, Part]:
+def shape_parts(robot: Robot) -> dict[str, Part]:
     """Return link -> its convex shapes with flat sides, which capsules only cover; else its capsules."""
     of_link: dict[str, list[Part]] = {}
     round_ones = {each.link for each in robot.shapes if each.of not in ("box", "hull") or each.radius or any(each.disc)}
     for each in robot.shapes:
         for corners in each.corners if each.link not in round_ones else ():
             hull = convex_hull(corners)
-            part = part_of((hull.vertices, hull.triangles), style.ARM[0], closed=True)
+            part = part_of((hull.vertices, hull.triangles), PLAIN, closed=True)
             of_link.setdefault(each.link, []).append(part)
     return parts_by_link(robot.capsules) | {link: joined(parts) for link, parts in of_link.items()}
 

@@ -25,11 +25,9 @@ from evenroad.geometry.shapes import Mesh
 from evenroad.loading.drawn import Drawn, read_drawn
 from evenroad.loading.load import read_robot
 from evenroad.loading.robot_file import RobotFile
-from evenroad.viz.parts import joined, part_of_shape
+from evenroad.viz.parts import PLAIN, joined, part_of_shape
 from evenroad.viz.stage import Part, part_of
 
-PLAIN = (-1, -1, -1)
-"""Colour of what has none in the file: pictures choose one for each link."""
 _GRAIN = 0.003
 """Size of the smallest details that are shown of large meshes [m]."""
 _MANY = 2000

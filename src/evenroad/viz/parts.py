@@ -11,9 +11,11 @@ from PIL import ImageColor
 from evenroad._arrays import Floats, Ints, unique_rows
 from evenroad.errors import EvenroadError
 from evenroad.geometry.shapes import Capsule, Mesh, Shape, Sphere
-from evenroad.viz import style
 from evenroad.viz.stage import Part, part_of
 from evenroad.viz.surfaces import surface_of
+
+PLAIN = (-1, -1, -1)
+"""Colour of what has none in its file: pictures choose one for each link."""
 
 
 def rgb(colour: str) -> tuple[int, int, int]:
@@ -39,7 +41,7 @@ def parts_by_link(shapes: Iterable[Shape]) -> dict[str, Part]:
     of_link: dict[str, list[Part]] = {}
     for shape in shapes:
         try:
-            of_link.setdefault(shape.link, []).append(part_of_shape(shape, style.ARM[0]))
+            of_link.setdefault(shape.link, []).append(part_of_shape(shape, PLAIN))
         except EvenroadError:
             of_link.pop(shape.link, None)
     return {link: joined(parts) for link, parts in of_link.items() if any(len(part.corners) for part in parts)}
@@ -51,6 +53,14 @@ def joined(parts: Sequence[Part]) -> Part:
     colours = np.concatenate([part.colours for part in parts])
     closed = all(part.closed for part in parts)
     return replace(parts[0], corners=corners, normals=normals, colour=colours, closed=closed)
+
+
+def most_common(parts: Iterable[Part]) -> tuple[int, int, int]:
+    """Return the colour that most triangles of bodies have."""
+    rows = np.concatenate([part.colours for part in parts])
+    different, index = unique_rows(rows.astype(np.float64))
+    red, green, blue = different[np.argmax(np.bincount(index))].astype(int).tolist()
+    return red, green, blue
 
 
 def by_colour(part: Part) -> list[Part]:

@@ -19,6 +19,7 @@ from evenroad.viz import style
 from evenroad.viz.arm import SIZE, ArmScene, with_contact
 from evenroad.viz.bodies import obstacle_part
 from evenroad.viz.camera import best_camera
+from evenroad.viz.parts import most_common
 from evenroad.viz.sheet import Entry, Sheet
 from evenroad.viz.stage import Stage
 
@@ -35,7 +36,7 @@ def draw_arm_world(world: ArmWorld, q: object = None) -> Image.Image:
     picture = (scene if free else with_contact(scene, row)).picture(row)
     said = f"{world.robot.name} in {world.scene.name}: {in_words(world, row)}"
     legend: list[Entry] = [] if free else [("in collision", style.COLLISION, "white")]
-    return Sheet.of_picture(picture, said, [("the robot", style.ARM[0], "white"), *legend]).image
+    return Sheet.of_picture(picture, said, [("the robot", most_common(scene.links.values()), "white"), *legend]).image
 
 
 def draw_scene(scene: Scene) -> Image.Image:
