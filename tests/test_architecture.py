@@ -32,13 +32,14 @@ MAY_IMPORT = {
     "geometry": BASE,
     "world": BASE | {"space", "geometry"},
     "driving": BASE | {"space", "world"},
+    "flight": BASE | {"space", "geometry", "world", "scenes"},
     **{part: BASE | {*VALUES, *OF_ARMS[:i]} for i, part in enumerate(OF_ARMS)},
     "robot": BASE | {"geometry", *OF_ARMS},
     "constraints": BASE | {*VALUES, *OF_ARMS},
     "saved": BASE | {"space", "geometry", "world", *OF_ARMS, "driving", "constraints"},
     "roadmap": BASE | {"points", "space", "world"},
-    "planning": BASE | {"saved", *VALUES, *OF_ARMS, "driving", "constraints", "roadmap"},
-    "trajectory": BASE | {"saved", "space", "geometry", "world", "driving", *OF_ARMS, "constraints"},
+    "planning": BASE | {"saved", *VALUES, *OF_ARMS, "driving", "flight", "constraints", "roadmap"},
+    "trajectory": BASE | {"saved", "space", "geometry", "world", "driving", "flight", *OF_ARMS, "constraints"},
     "certificates": BASE | {*VALUES, *OF_ARMS, "constraints", "trajectory"},
     "task": BASE | {"io", "saved", *VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory"},
     "datasets": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
@@ -234,7 +235,7 @@ def test_importing_evenroad_loads_nothing_heavy():
 def test_every_public_name_can_be_loaded_and_all_fit_in_a_head():
     for name in evenroad.__all__:
         assert getattr(evenroad, name) is not None
-    assert len(set(evenroad.__all__) - {"__version__"}) <= 45
+    assert len(set(evenroad.__all__) - {"__version__"}) <= 47
 
 
 def test_the_stub_says_where_every_public_name_is_and_nothing_else():

@@ -9,6 +9,8 @@ from evenroad._load import load as load
 from evenroad.certificates.certify_path import certify_path as certify_path
 from evenroad.collision.arm_world import ArmWorld as ArmWorld
 from evenroad.driving import PolygonMap as PolygonMap
+from evenroad.flight import FlightWorld as FlightWorld
+from evenroad.flight import State as State
 from evenroad.geometry import Box as Box
 from evenroad.geometry import Capsule as Capsule
 from evenroad.geometry import Cylinder as Cylinder

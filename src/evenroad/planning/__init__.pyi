@@ -2,6 +2,7 @@ from evenroad.planning.many import plan_many as plan_many
 from evenroad.planning.many_results import PlanResults as PlanResults
 from evenroad.planning.plan import plan as plan
 from evenroad.planning.planners.car import CarSearch as CarSearch
+from evenroad.planning.planners.flight import FlightSearch as FlightSearch
 from evenroad.planning.planners.growing import GrowingPRM as GrowingPRM
 from evenroad.planning.planners.prm import FMT as FMT
 from evenroad.planning.planners.prm import PRM as PRM

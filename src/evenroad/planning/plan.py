@@ -196,7 +196,10 @@ def _as_planner(planner: object) -> Planner | Roadmap:
 def _within(planner: Planner | Roadmap, world: World) -> Planner:
     """Return the planner in a world: a roadmap within it."""
     if is_directed(world.space) and not getattr(planner, "is_directed", False):
-        raise InvalidValue(f"only CarSearch plans for a car that drives only forwards, got {shown(planner)}")
+        raise InvalidValue(
+            "only CarSearch plans for a car that drives only forwards, and only FlightSearch for what flies, got"
+            f" {shown(planner)}"
+        )
     if isinstance(planner, Roadmap):
         return planner.within(world)
     if isinstance(planner, WorldRoadmap) and planner.world is not world:

@@ -20,6 +20,8 @@ from evenroad.constraints.differential_drive import DifferentialDrive, DrivenWor
 from evenroad.driving.car_space import CarSpace
 from evenroad.driving.car_world import CarWorld
 from evenroad.errors import InvalidValue, shown
+from evenroad.flight.flight_space import FlightSpace
+from evenroad.flight.flight_trajectory import FlightTrajectory, flight_trajectory
 from evenroad.trajectory.arm import arm_trajectory
 from evenroad.trajectory.car import car_trajectory
 from evenroad.trajectory.car_states import CarTrajectory
@@ -49,10 +51,12 @@ def trajectory_of(
     speed: float,
     pieces: Floats | None = None,
     **options: Any,
-) -> Trajectory | CarTrajectory:
+) -> Trajectory | CarTrajectory | FlightTrajectory:
     """See :meth:`PlanResult.trajectory`; a car drives the `pieces`, or else the shortest curves between waypoints."""
     if isinstance(world, CarWorld) and isinstance(world.space, CarSpace):
         return _of_car(world, world.space, path, pieces, limits, speed=speed, **options)
+    if isinstance(world.space, FlightSpace):
+        return _of_flight(world, world.space, path, limits, speed=speed, **options)
     for key in options:
         require_known("keyword of trajectory:", key, _known_options())
     moving = InMotion(path, *(options.pop(name, None) for name in _VELOCITIES))
@@ -115,6 +119,23 @@ def _of_point(
         waypoints=waypoints,
         **states._asdict(),
     )
+
+
+def _of_flight(
+    world: World,
+    space: FlightSpace,
+    path: Floats,
+    limits: Limits | DriveLimits | str | os.PathLike[str] | None,
+    *,
+    speed: float,
+    **options: Any,
+) -> FlightTrajectory:
+    """Return the flight along a path, whose states have velocities already."""
+    for key in options:
+        require_known("keyword of a flight's trajectory:", key, {"step"})
+    if limits is not None or speed != 1.0:
+        raise InvalidValue("a flight has its speeds from the world: FlightWorld(scene, speed=..., acceleration=...)")
+    return flight_trajectory(world, space.native.pieces_along(path), **options)
 
 
 def _of_car(

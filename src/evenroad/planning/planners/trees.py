@@ -108,6 +108,12 @@ def default_planner(world: World, *, improve: bool = False) -> Planner:
             from evenroad.planning.planners.car import CarSearch
 
             return CarSearch()
+        from evenroad.flight.flight_space import FlightSpace
+
+        if isinstance(world.space, FlightSpace):
+            from evenroad.planning.planners.flight import FlightSearch
+
+            return FlightSearch()
         return RRTConnect(improve) if isinstance(world, KeptWorld) else _growing(improve)
     if connector is CELLS:
         return GridSearch(improve)

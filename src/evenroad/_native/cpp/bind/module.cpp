@@ -37,6 +37,7 @@ NB_MODULE(EVENROAD_MODULE, module) {
   module.attr("SOURCES") = EVENROAD_SOURCES;
   evenroad::bind::add_certificates(module);
   evenroad::bind::add_drive(module);
+  evenroad::bind::add_flight(module);
   evenroad::bind::add_picture(module);
   evenroad::bind::add_planning(module);
   evenroad::bind::add_points(module);

@@ -22,6 +22,7 @@ struct InvalidValue : std::invalid_argument {
 void add_certificates(nanobind::module_& module);
 void add_chain(nanobind::module_& robot);
 void add_drive(nanobind::module_& module);
+void add_flight(nanobind::module_& module);
 void add_further_limits(nanobind::module_& trajectory);
 void add_keeps(nanobind::module_& robot);
 void add_picture(nanobind::module_& module);

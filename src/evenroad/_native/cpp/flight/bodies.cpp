@@ -1,0 +1,234 @@
+#include "flight/bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/time_limit.hpp"
+
+namespace evenroad::flight {
+
+namespace {
+
+constexpr std::uint32_t PER_LEAF = 4;
+/// A curve is halved before the tree is searched until it keeps this near to its chord, as a share of the radius.
+constexpr double NEAR_CHORD = 1.0;
+/// Number of halvings after which a curve is as short as its tolerance, with much to spare.
+constexpr std::size_t DEEPEST = 64;
+
+/// Return the point of a box or a cylinder that is nearest to a point.
+Vector nearest_on(const robot::Exact& o, const Vector& at) {
+  const Vector d{at[0] - o.centre[0], at[1] - o.centre[1], at[2] - o.centre[2]};
+  Vector own;
+  for (std::size_t k = 0; k < 3; k++)
+    own[k] = d[0] * o.rotation[k] + d[1] * o.rotation[3 + k] + d[2] * o.rotation[6 + k];
+  own[2] = std::clamp(own[2], -o.half[2], o.half[2]);
+  if (o.form == robot::Form::CYLINDER) {
+    const double aside = std::sqrt(own[0] * own[0] + own[1] * own[1]);
+    if (aside > o.half[0]) own[0] *= o.half[0] / aside, own[1] *= o.half[0] / aside;
+  } else {
+    for (std::size_t k = 0; k < 2; k++) own[k] = std::clamp(own[k], -o.half[k], o.half[k]);
+  }
+  Vector found;
+  for (std::size_t k = 0; k < 3; k++) {
+    const double* row = o.rotation + 3 * k;
+    found[k] = o.centre[k] + row[0] * own[0] + row[1] * own[1] + row[2] * own[2];
+  }
+  return found;
+}
+
+/// Return the point of a segment that is nearest to a point.
+Vector nearest_on(const Vector& from, const Vector& to, const Vector& at) {
+  const Vector along = to - from;
+  const double squared = squared_length(along);
+  return from + along * (squared > 0.0 ? std::clamp(dot(at - from, along) / squared, 0.0, 1.0) : 0.0);
+}
+
+/// Return the point of a triangle that is nearest to a point.
+Vector nearest_on(const Triangle& triangle, const Vector& at) {
+  const auto& [a, b, c] = triangle.corners;
+  const Vector normal = cross(b - a, c - a);
+  const double squared = squared_length(normal);
+  if (squared > 0.0) {
+    const auto inside = [&](const Vector& from, const Vector& to) {
+      return dot(cross(to - from, at - from), normal) >= 0.0;
+    };
+    if (inside(a, b) && inside(b, c) && inside(c, a)) return at - normal * (dot(at - a, normal) / squared);
+  }
+  Vector best = nearest_on(a, b, at);
+  for (const Vector& other : {nearest_on(b, c, at), nearest_on(c, a, at)}) {
+    if (squared_length(other - at) < squared_length(best - at)) best = other;
+  }
+  return best;
+}
+
+bool overlaps(double from, double to, double low, double high, double& enter, double& leave) {
+  const double along = to - from;
+  if (along == 0.0) return low <= from && from <= high;
+  double first = (low - from) / along, last = (high - from) / along;
+  if (first > last) std::swap(first, last);
+  enter = std::max(enter, first), leave = std::min(leave, last);
+  return enter <= leave;
+}
+
+}  // namespace
+
+Bodies::Bodies(std::vector<Solid> solids, std::vector<Triangle> triangles, std::vector<Ball> balls)
+    : solids_(std::move(solids)), triangles_(std::move(triangles)), balls_(std::move(balls)) {
+  const auto all = static_cast<std::uint32_t>(count());
+  for (std::uint32_t body = 0; body < all; body++) {
+    const bool is_moving = body < solids_.size() && squared_length(solids_[body].velocity) > 0.0;
+    (is_moving ? movers_ : order_).push_back(body);
+  }
+  if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
+}
+
+std::uint32_t Bodies::build(std::uint32_t first, std::uint32_t end) {
+  const auto number = static_cast<std::uint32_t>(nodes_.size());
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Node node{{far, far, far}, {-far, -far, -far}, first, end - first, 0};
+  Vector low, high;
+  for (std::uint32_t i = first; i < end; i++) {
+    write_box(order_[i], low, high);
+    for (std::size_t k = 0; k < 3; k++) {
+      node.low[k] = std::min(node.low[k], low[k]), node.high[k] = std::max(node.high[k], high[k]);
+    }
+  }
+  nodes_.push_back(node);
+  if (node.count <= PER_LEAF) return number;
+  const Vector size = node.high - node.low;
+  const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  const auto middle = [&](std::uint32_t body) {
+    Vector lower, upper;
+    write_box(body, lower, upper);
+    return std::pair(lower[axis] + upper[axis], body);
+  };
+  const std::uint32_t half = first + node.count / 2;
+  std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + end,
+                   [&](std::uint32_t a, std::uint32_t b) { return middle(a) < middle(b); });
+  build(first, half);
+  const std::uint32_t second = build(half, end);
+  nodes_[number].second = second, nodes_[number].count = 0;
+  return number;
+}
+
+void Bodies::write_box(std::uint32_t body, Vector& low, Vector& high) const {
+  if (body < solids_.size()) {
+    const robot::Exact& shape = solids_[body].shape;
+    double extents[3];
+    robot::write_extents(shape, extents);
+    for (std::size_t k = 0; k < 3; k++) low[k] = shape.centre[k] - extents[k], high[k] = shape.centre[k] + extents[k];
+    return;
+  }
+  body -= static_cast<std::uint32_t>(solids_.size());
+  if (body < triangles_.size()) {
+    const Triangle& each = triangles_[body];
+    for (std::size_t k = 0; k < 3; k++) {
+      const auto [least, most] = std::minmax({each.corners[0][k], each.corners[1][k], each.corners[2][k]});
+      low[k] = least - each.rounding, high[k] = most + each.rounding;
+    }
+    return;
+  }
+  const Ball& ball = balls_[body - triangles_.size()];
+  for (std::size_t k = 0; k < 3; k++) low[k] = ball.centre[k] - ball.radius, high[k] = ball.centre[k] + ball.radius;
+}
+
+Bodies::Near Bodies::near_to(std::uint32_t body, const Vector& at) const {
+  if (body < solids_.size()) return {nearest_on(solids_[body].shape, at), solids_[body].shape.rounding};
+  body -= static_cast<std::uint32_t>(solids_.size());
+  if (body < triangles_.size()) return {nearest_on(triangles_[body], at), triangles_[body].rounding};
+  const Ball& ball = balls_[body - triangles_.size()];
+  return {ball.centre, ball.radius};
+}
+
+template <class Visit>
+bool Bodies::visit(const Vector& from, const Vector& to, const Vector& width, const Visit& visit) const {
+  if (nodes_.empty()) return true;
+  std::array<std::uint32_t, DEEPEST> waiting{0};
+  for (std::size_t left = 1; left > 0;) {
+    const Node& node = nodes_[waiting[--left]];
+    double enter = 0.0, leave = 1.0;
+    bool is_near = true;
+    for (std::size_t k = 0; k < 3 && is_near; k++) {
+      is_near = overlaps(from[k], to[k], node.low[k] - width[k], node.high[k] + width[k], enter, leave);
+    }
+    if (!is_near) continue;
+    if (node.count == 0) {
+      waiting[left++] = node.second, waiting[left++] = static_cast<std::uint32_t>(&node - nodes_.data()) + 1;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; i++) {
+      if (!visit(order_[i])) return false;
+    }
+  }
+  return true;
+}
+
+bool Bodies::is_free(const Vector& at, double time, double radius) const {
+  return is_free(Parabola{at, {}, {}, 0.0}, time, radius);
+}
+
+bool Bodies::is_free(const Parabola& curve, double time, double radius) const {
+  const double h = curve.duration;
+  if (norm(curve.acceleration) * h * h * 0.125 > NEAR_CHORD * radius && h > 0.0) {
+    const double half = 0.5 * h;
+    return is_free({curve.position, curve.velocity, curve.acceleration, half}, time, radius) &&
+           is_free({curve.at(half), curve.velocity_at(half), curve.acceleration, half}, time + half, radius);
+  }
+  for (const std::uint32_t body : movers_) {
+    const Vector& velocity = solids_[body].velocity;
+    // As it looks from the body, whose place is that of time 0.
+    if (!clears(body, {curve.position - velocity * time, curve.velocity - velocity, curve.acceleration, h}, radius)) {
+      return false;
+    }
+  }
+  Vector width;
+  for (std::size_t k = 0; k < 3; k++) width[k] = radius + std::abs(curve.acceleration[k]) * h * h * 0.125;
+  return visit(curve.position, curve.at(h), width, [&](std::uint32_t body) { return clears(body, curve, radius); });
+}
+
+bool Bodies::clears(std::uint32_t body, const Parabola& curve, double radius) const {
+  struct Interval {
+    double from, to;
+  };
+  std::array<Interval, DEEPEST> waiting{Interval{0.0, curve.duration}};
+  ClockWatch clock(1024);
+  for (std::size_t left = 1; left > 0;) {
+    const auto [from, to] = waiting[--left];
+    clock.look();
+    const double middle = 0.5 * (from + to);
+    const Vector at = curve.at(middle);
+    const Near near = near_to(body, at);
+    const double away = norm(at - near.point), least = radius + near.rounding;
+    if (!(away > least)) return false;
+    const Vector normal = (at - near.point) * (1.0 / away);
+    const auto height = [&](double t) { return dot(curve.at(t) - near.point, normal); };
+    double lowest = std::min(height(from), height(to));
+    if (const double bend = dot(curve.acceleration, normal); bend > 0.0) {
+      const double t = -dot(curve.velocity, normal) / bend;
+      if (from < t && t < to) lowest = std::min(lowest, height(t));
+    }
+    if (lowest > least) continue;
+    const double speed =
+        std::sqrt(std::max(squared_length(curve.velocity_at(from)), squared_length(curve.velocity_at(to))));
+    if (speed * (to - from) < TOLERANCE || left + 2 > DEEPEST) return false;
+    waiting[left++] = {middle, to}, waiting[left++] = {from, middle};
+  }
+  return true;
+}
+
+Bodies::Nearest Bodies::nearest(const Vector& at, double time, double most) const {
+  Nearest found{most, -1};
+  const auto look = [&](std::uint32_t body, const Vector& seen) {
+    const Near near = near_to(body, seen);
+    const double away = std::max(norm(seen - near.point) - near.rounding, 0.0);
+    if (away < found.distance) found = {away, body};
+    return true;
+  };
+  for (const std::uint32_t body : movers_) look(body, at - solids_[body].velocity * time);
+  visit(at, at, {most, most, most}, [&](std::uint32_t body) { return look(body, at); });
+  return found;
+}
+
+}  // namespace evenroad::flight

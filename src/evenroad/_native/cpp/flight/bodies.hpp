@@ -1,0 +1,81 @@
+// What a ball must not touch: boxes, cylinders, spheres, capsules, triangles and the points of clouds, in a tree.
+//
+// A parabola is free of a convex body if a plane that touches the body keeps it off: the plane at the point of the body
+// that is nearest to the middle of the curve.  How far a parabola keeps from a plane is a quadratic, whose least value
+// is known.  Where the plane does not do, the curve is halved.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "flight/motion.hpp"
+#include "robot/exact_obstacle.hpp"
+
+namespace evenroad::flight {
+
+/// A triangle of a mesh, larger by a rounding.
+struct Triangle {
+  Vector corners[3];
+  double rounding;
+};
+
+/// A point of a cloud.
+struct Ball {
+  Vector centre;
+  double radius;
+};
+
+/// A solid, which may move: as given at time 0.
+struct Solid {
+  robot::Exact shape;
+  Vector velocity;
+};
+
+/// The shortest interval of a curve that is halved further [m]: a curve this near to contact is not called free.
+constexpr double TOLERANCE = 1e-3;
+
+class Bodies {
+ public:
+  Bodies(std::vector<Solid> solids, std::vector<Triangle> triangles, std::vector<Ball> balls);
+
+  /// Say whether a ball is free at a time.
+  bool is_free(const Vector& at, double time, double radius) const;
+  /// Say whether a ball is proved free along a parabola that begins at a time.
+  bool is_free(const Parabola& curve, double time, double radius) const;
+  /// Return the distance of a point from the nearest body at a time, at most `most`, and the number of the body.
+  struct Nearest {
+    double distance;
+    std::int64_t body;
+  };
+  Nearest nearest(const Vector& at, double time, double most) const;
+  std::size_t count() const { return solids_.size() + triangles_.size() + balls_.size(); }
+
+ private:
+  /// A box around bodies; the first of two children follows at once.
+  struct Node {
+    Vector low, high;
+    std::uint32_t first, count, second;
+  };
+  /// Where the core of a body is nearest to a point, and by how much the body is larger than its core.
+  struct Near {
+    Vector point;
+    double rounding;
+  };
+
+  Near near_to(std::uint32_t body, const Vector& at) const;
+  void write_box(std::uint32_t body, Vector& low, Vector& high) const;
+  std::uint32_t build(std::uint32_t first, std::uint32_t end);
+  bool clears(std::uint32_t body, const Parabola& curve, double radius) const;
+  /// Call `visit(body)` for each body whose box a segment, widened by half extents, touches, until one returns false.
+  template <class Visit>
+  bool visit(const Vector& from, const Vector& to, const Vector& width, const Visit& visit) const;
+
+  std::vector<Solid> solids_;
+  std::vector<std::uint32_t> movers_;
+  std::vector<Triangle> triangles_;
+  std::vector<Ball> balls_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace evenroad::flight
