@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -43,12 +43,14 @@ class Around:
     rng: np.random.Generator
     low: np.ndarray
     high: np.ndarray
+    scale: float = 1.0
+    """Of the sizes of all that is drawn."""
 
     def place(self) -> np.ndarray:
         return self.rng.uniform(self.low, self.high)
 
     def size(self, share: float = 0.15) -> float:
-        return float(share * np.max(self.high - self.low) * self.rng.uniform(0.3, 1.0))
+        return float(self.scale * share * np.max(self.high - self.low) * self.rng.uniform(0.3, 1.0))
 
 
 def boxes(around: Around) -> list[er.Shape]:
@@ -156,26 +158,27 @@ class Draw:
         return cls(Around(rng, low, high), tuple(dict.fromkeys([first, *others])), extras)
 
     def question(self, tried: Tried) -> Question | None:
-        """Return a question with a free start and goal; None if there is none."""
+        """Return a question with a free start and goal, among ever smaller obstacles; None if there is none."""
         robot, around, rng = tried.model.robot, self.around, self.around.rng
         bodied = list(dict.fromkeys(each.link for each in robot.capsules))
         if "held" in self.extras:
             body = er.Box([around.size(0.1) for _ in range(3)], xyz=0.05 * rng.normal(size=3))
-            robot = robot.holding(HeldObject("held", body, robot.links[-1], robot.links[len(robot.links) // 2 :]))
+            robot = robot.holding(HeldObject("held", body, bodied[-1], tuple(bodied[len(bodied) // 2 :])))
         if "padding" in self.extras:
             robot = robot.with_padding({str(rng.choice(bodied)): float(rng.uniform(0.0, 0.02))})
         limits = {f"{BASE}/{each}": (-0.5, 0.5) for each in "xy"} if "base" in self.extras else {}
         clearance = 0.01 if "clearance" in self.extras else 0.0
-        for _ in range(TRIES):
-            shapes = [shape for kind in self.kinds for shape in KINDS[kind](around)]
-            obstacles = [Obstacle(f"obstacle {number}", shape) for number, shape in enumerate(shapes)]
+        for number in range(TRIES):
+            smaller = replace(around, scale=0.8**number)
+            shapes = [shape for kind in self.kinds for shape in KINDS[kind](smaller)]
+            obstacles = [Obstacle(f"obstacle {index}", shape) for index, shape in enumerate(shapes)]
             if "wider" in self.extras:
                 obstacles[-1] = Obstacle(obstacles[-1].name, shapes[-1], clearance=0.02)
             names = {obstacles[int(rng.integers(len(obstacles)))].name} if "allowed" in self.extras else set()
             allowed = frozenset((link, name) for link in bodied[: 1 + len(bodied) // 3] for name in names)
             scene = er.Scene(obstacles, limits=limits, allowed=allowed)
             world = ArmWorld(in_scene(robot, scene), scene, clearance=clearance)
-            q = world.space.from_cube(rng.random((60, world.space.cube_dim)))
+            q = world.space.from_cube(rng.random((200, world.space.cube_dim)))
             free = q[world.valid(q)]
             if len(free) > 1:
                 return Question(world, free[0], free[-1], str(rng.choice(bodied)) if "kept" in self.extras else "")

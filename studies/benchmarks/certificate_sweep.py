@@ -216,12 +216,11 @@ def _read(out: Path) -> list[dict[str, Any]]:
         return list(csv.DictReader(file))
 
 
-def _chosen(robots: list[str]) -> Iterator[str]:
-    for each in robots:
-        if Path(each).is_dir():
-            yield from (str(path) for _, path in robots_in([Path(each)]))
-        else:
-            yield each
+def _chosen(robots: list[str]) -> list[str]:
+    """Return names and files, of all folders in an order that mixes them: what is done at any time is a sample."""
+    given = [each for each in robots if not Path(each).is_dir()]
+    found = [str(path) for _, path in robots_in([Path(each) for each in robots if Path(each).is_dir()])]
+    return given + [found[i] for i in np.random.default_rng(0).permutation(len(found))]
 
 
 if __name__ == "__main__":
