@@ -57,6 +57,16 @@ char* joined(const char* first, const char* second, const char* third) {
   return text;
 }
 
+int by_number(const void* a, const void* b) {
+  const size_t *p = a, *q = b;
+  return (*p > *q) - (*p < *q);
+}
+
+size_t first_of(size_t* group, size_t item) {
+  while (group[item] != item) item = group[item] = group[group[item]];
+  return item;
+}
+
 uint64_t little_endian(const uint8_t* data, int bytes) {
   uint64_t bits = 0;
   for (int i = bytes; i--;) bits = bits << 8 | data[i];

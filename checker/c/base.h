@@ -37,6 +37,10 @@ char* joined(const char* first, const char* second, const char* third);
 bool are_numbers(const char* text, double* numbers, size_t count);
 void read_numbers(const char* text, double* numbers, size_t count, const char* where);
 
+/* Sort numbers by qsort; and the first item of the group of one, in which each leads on to another. */
+int by_number(const void* a, const void* b);
+size_t first_of(size_t* group, size_t item);
+
 /* A number of a few bytes, the lowest first. */
 uint64_t little_endian(const uint8_t* data, int bytes);
 

@@ -40,11 +40,6 @@ static bool share_face(const Axes* axes, const Cell* a, const Cell* b, size_t bu
   return true;
 }
 
-static size_t first_of(size_t* group, size_t i) {
-  while (group[i] != i) i = group[i] = group[group[i]];
-  return i;
-}
-
 /* The first place of a beginning at `low` or above it. */
 static size_t place_of(const Beginning* beginnings, size_t count, uint32_t low) {
   size_t from = 0;

@@ -12,14 +12,14 @@ typedef struct {
 /* Triangles that hang together by equal corners: `count` of the members from `begin` on, the earliest one first. */
 typedef struct {
   size_t begin, count;
-  bool closed;
+  bool looked_at, closed;
 } Piece;
 
 typedef struct {
   Vector* points; /* the distinct corners, of each part of a file by itself; or those of a cloud */
   Triangle* triangles;
   size_t point_count, triangle_count;
-  Piece* pieces; /* from `find_pieces`; a triangle that repeats an earlier one is in none */
+  Piece* pieces; /* from `find_pieces` */
   size_t piece_count, *members;
 } Mesh;
 
@@ -35,6 +35,9 @@ void read_collada(Faces* faces, File file, const char* path);
 /* The mesh of a file; if it is convex, all of its parts are one. */
 Mesh* read_mesh(File file, const char* path, const double scale[3], bool convex);
 void find_pieces(Mesh* mesh);
+
+/* Tell whether a piece is closed, and leave out its triangles that repeat an earlier one. */
+bool is_closed(const Mesh* mesh, Piece* piece);
 
 enum { BOX, SPHERE, CYLINDER, CAPSULE, MESH, PLANE, CLOUD, KINDS };
 extern const char* const kind_names[KINDS];

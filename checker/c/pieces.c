@@ -1,102 +1,91 @@
 /* The connected pieces of a mesh, and which of them are closed. */
-#include <string.h>
+#include <stdlib.h>
 
 #include "inputs.h"
 
-/* The numbers of the corners of a triangle, or of an edge, the lowest first. */
+/* The numbers of the corners of a triangle, or of an edge and 0, the lowest first; and which triangle it is. */
 typedef struct {
-  uint32_t number[3], triangle;
+  size_t number[3], triangle;
 } Key;
 
-static bool are_equal(const Key* a, const Key* b) {
-  return a->number[0] == b->number[0] && a->number[1] == b->number[1] && a->number[2] == b->number[2];
+static int by_numbers(const void* a, const void* b) {
+  const Key *p = a, *q = b;
+  for (int i = 0; i < 3; ++i) {
+    if (p->number[i] != q->number[i]) return p->number[i] < q->number[i] ? -1 : 1;
+  }
+  return 0;
 }
 
-/* Sort keys of so many numbers below `points`: by the last number first, each time in the order that they have. */
-static Key* sorted(Key* keys, size_t count, int numbers, size_t points) {
-  Key* to = take(count + 1, sizeof *to);
-  size_t* begin = take(points + 1, sizeof *begin);
-  for (int k = numbers; k--;) {
-    memset(begin, 0, (points + 1) * sizeof *begin);
-    for (size_t i = 0; i < count; ++i) ++begin[keys[i].number[k] + 1];
-    for (size_t i = 0; i < points; ++i) begin[i + 1] += begin[i];
-    for (size_t i = 0; i < count; ++i) to[begin[keys[i].number[k]]++] = keys[i];
-    Key* swapped = keys;
-    keys = to;
-    to = swapped;
-  }
-  return keys;
+static int by_numbers_and_triangle(const void* a, const void* b) {
+  int order = by_numbers(a, b);
+  return order ? order : by_number(&((const Key*)a)->triangle, &((const Key*)b)->triangle);
 }
 
 static Key key_of(const Triangle* of, size_t triangle) {
-  uint32_t a = (uint32_t)of->corner[0], b = (uint32_t)of->corner[1], c = (uint32_t)of->corner[2], swapped;
-  if (a > b) swapped = a, a = b, b = swapped;
-  if (b > c) swapped = b, b = c, c = swapped;
-  if (a > b) swapped = a, a = b, b = swapped;
-  return (Key){{a, b, c}, (uint32_t)triangle};
+  Key key = {{of->corner[0], of->corner[1], of->corner[2]}, triangle};
+  qsort(key.number, 3, sizeof *key.number, by_number);
+  return key;
 }
 
-/* Tell which triangles have the corners of an earlier one: two of them would hide what is inside. */
-static bool* repeated(const Mesh* mesh) {
-  size_t count = mesh->triangle_count;
-  Key* keys = take(count, sizeof *keys);
-  bool* again = take(count, sizeof *again);
-  for (size_t i = 0; i < count; ++i) keys[i] = key_of(mesh->triangles + i, i);
-  keys = sorted(keys, count, 3, mesh->point_count);
-  for (size_t i = 1; i < count; ++i) again[keys[i].triangle] = are_equal(keys + i - 1, keys + i);
-  return again;
+/* Leave out triangles of a piece that have the corners of an earlier one: two of them would hide what is inside. */
+static void leave_out_repeated(const Mesh* mesh, Piece* piece) {
+  size_t *members = mesh->members + piece->begin, count = 0;
+  Key* keys = take(piece->count, sizeof *keys);
+  for (size_t i = 0; i < piece->count; ++i) keys[i] = key_of(mesh->triangles + members[i], members[i]);
+  qsort(keys, piece->count, sizeof *keys, by_numbers_and_triangle);
+  for (size_t i = 0; i < piece->count; ++i) {
+    if (!i || by_numbers(keys + i - 1, keys + i)) members[count++] = keys[i].triangle;
+  }
+  piece->count = count;
+  qsort(members, count, sizeof *members, by_number);
 }
 
-static size_t first_of(size_t* group, size_t i) {
-  while (group[i] != i) i = group[i] = group[group[i]];
-  return i;
-}
-
-static void join(size_t* group, size_t a, size_t b) { group[first_of(group, a)] = first_of(group, b); }
-
-/* Note which pieces have an edge that belongs to an odd number of triangles. */
-static void find_holes(Mesh* mesh, const bool* again, const size_t* piece_of) {
-  Key* keys = take(3 * mesh->triangle_count, sizeof *keys);
+/* Tell whether each edge of a piece belongs to an even number of triangles. */
+static bool has_no_holes(const Mesh* mesh, const Piece* piece) {
+  Key* keys = take(3 * piece->count, sizeof *keys);
   size_t count = 0;
-  for (size_t i = 0; i < 3 * mesh->triangle_count; ++i) {
-    const size_t* corner = mesh->triangles[i / 3].corner;
-    uint32_t a = (uint32_t)corner[i % 3], b = (uint32_t)corner[(i + 1) % 3];
-    if (a != b && !again[i / 3]) keys[count++] = (Key){{a < b ? a : b, a < b ? b : a, 0}, (uint32_t)(i / 3)};
+  for (size_t i = 0; i < 3 * piece->count; ++i) {
+    const size_t* corner = mesh->triangles[mesh->members[piece->begin + i / 3]].corner;
+    size_t a = corner[i % 3], b = corner[(i + 1) % 3];
+    if (a != b) keys[count++] = (Key){{a < b ? a : b, a < b ? b : a, 0}, 0};
   }
-  keys = sorted(keys, count, 2, mesh->point_count);
+  qsort(keys, count, sizeof *keys, by_numbers);
   for (size_t i = 0, next; i < count; i = next) {
-    for (next = i + 1; next < count && are_equal(keys + i, keys + next);) ++next;
-    if ((next - i) % 2) mesh->pieces[piece_of[keys[i].triangle]].closed = false;
+    for (next = i + 1; next < count && !by_numbers(keys + i, keys + next);) ++next;
+    if ((next - i) % 2) return false;
   }
+  return true;
+}
+
+bool is_closed(const Mesh* mesh, Piece* piece) {
+  if (!piece->looked_at) {
+    leave_out_repeated(mesh, piece);
+    piece->closed = has_no_holes(mesh, piece);
+    piece->looked_at = true;
+  }
+  return piece->closed;
 }
 
 void find_pieces(Mesh* mesh) {
   if (mesh->pieces) return;
   size_t count = mesh->triangle_count, *group = take(mesh->point_count, sizeof *group);
   size_t *number = take(mesh->point_count, sizeof *number), *piece_of = take(count, sizeof *piece_of);
-  const bool* again = repeated(mesh);
   for (size_t i = 0; i < mesh->point_count; ++i) group[i] = i;
-  for (size_t i = 0; i < count; ++i) {
-    for (int k = 1; k < 3; ++k) join(group, mesh->triangles[i].corner[0], mesh->triangles[i].corner[k]);
+  for (size_t i = 0; i < 2 * count; ++i) {
+    const size_t* corner = mesh->triangles[i / 2].corner + i % 2;
+    group[first_of(group, corner[0])] = first_of(group, corner[1]);
   }
   mesh->pieces = take(count, sizeof *mesh->pieces);
   mesh->members = take(count, sizeof *mesh->members);
   for (size_t i = 0; i < count; ++i) {
     size_t* own = number + first_of(group, mesh->triangles[i].corner[0]);
-    if (!*own) {
-      *own = ++mesh->piece_count;
-      mesh->pieces[*own - 1].closed = true;
-    }
+    if (!*own) *own = ++mesh->piece_count;
     piece_of[i] = *own - 1;
-    mesh->pieces[*own - 1].count += !again[i];
+    ++mesh->pieces[piece_of[i]].count;
   }
+  size_t* filled = take(mesh->piece_count, sizeof *filled);
   for (size_t i = 1; i < mesh->piece_count; ++i) {
     mesh->pieces[i].begin = mesh->pieces[i - 1].begin + mesh->pieces[i - 1].count;
   }
-  size_t* filled = take(mesh->piece_count, sizeof *filled);
-  for (size_t i = 0; i < count; ++i) {
-    size_t own = piece_of[i];
-    if (!again[i]) mesh->members[mesh->pieces[own].begin + filled[own]++] = i;
-  }
-  find_holes(mesh, again, piece_of);
+  for (size_t i = 0; i < count; ++i) mesh->members[mesh->pieces[piece_of[i]].begin + filled[piece_of[i]]++] = i;
 }

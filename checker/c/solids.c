@@ -79,11 +79,14 @@ static size_t require_outside_of(Solid* outer, const Vector* points, size_t coun
   size_t opened = 0;
   find_ranges(outer);
   for (size_t i = 0; i < mesh->piece_count; ++i) {
-    const Piece* piece = mesh->pieces + i;
+    Piece* piece = mesh->pieces + i;
     for (size_t k = 0; k < count && !outer->met[i]; ++k) {
       if (!holds(outer->ranges + i, points[k])) continue;
-      if (!piece->closed) opened += outer->met[i] = true;
-      if (piece->closed && is_inside(points[k], outer, piece)) fail(REFUSED, "a body is inside of another one");
+      if (!is_closed(mesh, piece)) {
+        opened += outer->met[i] = true;
+      } else if (is_inside(points[k], outer, piece)) {
+        fail(REFUSED, "a body is inside of another one");
+      }
     }
   }
   return opened;

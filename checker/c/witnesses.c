@@ -61,8 +61,8 @@ static bool is_inside_surface(const Solid* solid, const Ball* ball) {
   find_pieces(solid->shape->mesh);
   const Mesh* mesh = solid->shape->mesh;
   for (size_t i = 0; i < mesh->piece_count; ++i) {
-    const Piece* piece = mesh->pieces + i;
-    double nearest = piece->closed ? INFINITY : -INFINITY;
+    Piece* piece = mesh->pieces + i;
+    double nearest = is_closed(mesh, piece) ? INFINITY : -INFINITY;
     for (size_t k = 0; k < piece->count && nearest >= ball->radius + SPARE; ++k) {
       Vector c[3];
       for (size_t n = 0; n < 3; ++n) c[n] = corner_at(solid, mesh->members[piece->begin + k], n);
