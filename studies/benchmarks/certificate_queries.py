@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from zlib import crc32
 
 import numpy as np
 
@@ -149,9 +150,9 @@ class Draw:
     extras: frozenset[str] = field(default_factory=frozenset)
 
     @classmethod
-    def of(cls, number: int, low: np.ndarray, high: np.ndarray) -> Draw:
-        """Return the draw of a number: one to three kinds of obstacle, each kind is the first one in turn."""
-        rng = np.random.default_rng([7, number])
+    def of(cls, robot: str, number: int, low: np.ndarray, high: np.ndarray) -> Draw:
+        """Return the draw of a number for a robot: one to three kinds of obstacle, each is the first one in turn."""
+        rng = np.random.default_rng([crc32(robot.encode()), number])
         first = list(KINDS)[number % len(KINDS)]
         others = [str(each) for each in rng.choice(list(KINDS), rng.integers(3), replace=False)]
         extras = frozenset(each for each in EXTRAS if rng.random() < SHARE)

@@ -58,7 +58,7 @@ def rows_of(path: Path | str, numbers: Iterable[int], seconds: float, keep: Path
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "path.cert"
         for number in numbers:
-            draw = Draw.of(number, low, high)
+            draw = Draw.of(Path(path).name, number, low, high)
             row = {"query": number, "kinds": " ".join([*draw.kinds, *sorted(draw.extras)])}
             try:
                 if "base" in draw.extras:
