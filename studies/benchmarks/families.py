@@ -4,6 +4,7 @@
     evenroad bench apart --store apart.db
     python -m studies.benchmarks.families fair.db apart.db
     python -m studies.benchmarks.families --candidates studies/docs/data/which_points.csv --fresh FRESH.csv
+    python -m studies.benchmarks.families --cells studies/docs/data/which_points_now.csv
 
 The stores may be parts of a suite; a row says of how many worlds it is.  Differences are in percentage points, paired
 by world, with the standard error over worlds; k is the number of neighbours of the rule, and "all" the mean over k.
@@ -12,6 +13,10 @@ by world, with the standard error over worlds; k is the number of neighbours of 
 links, it names the best set there and how far it is ahead of `even`.  A best set of many is ahead by luck as well, so
 `--fresh` has the same sets in other worlds: the table is of all worlds together, and the list after it says what became
 there of sets that were best in the first worlds.
+
+`--cells` reads such rows, too, and has a line for each family or kind of worlds, dimension and number of points: the
+success of `even` and how much more the others solve, with the default number of neighbours.  Rows of different worlds
+are pooled.
 """
 
 from __future__ import annotations
@@ -221,6 +226,35 @@ def print_best(here: Mapping[tuple[str, int], Sets], there: Mapping[tuple[str, i
         print(f"* {text}, then {gap_text(fresh, column)}")
 
 
+OTHERS = ("sobol", "uniform", "halton")
+"""What stands beside `even` in each cell."""
+
+
+def print_cells(rows: Sequence[Mapping[str, str]]) -> None:
+    """Print the success of `even` in each cell, and how much more other sets solve, and what is ahead of it."""
+    cells: dict[tuple[str, int, str], dict[str, list[Mapping[str, str]]]] = defaultdict(lambda: defaultdict(list))
+    for row in rows:
+        # In these families a cell holds worlds of all kinds; elsewhere each kind is a cell of its own.
+        mixed = row["family"] in ("apart", "fair")
+        if (row["kind"] == "all") == mixed:
+            name = row["family"] if mixed else row["kind"]
+            cells[name, int(row["d"]), row["n"].split()[len(row["n"].split()) // 2]][row["set"]].append(row)
+    line("worlds", "d", "N", "number", "`even`, %", *OTHERS)
+    line(":--", *["--:"] * 7)
+    leads: dict[str, list[list[tuple[float, float]]]] = defaultdict(list)
+    for (name, d, n), sets in sorted(cells.items(), key=lambda cell: (cell[0][0], cell[0][1], int(cell[0][2]))):
+        column = f"plan {10 if d < 6 else 20}"
+        here = sets["even"]
+        worlds = [int(row["worlds"]) for row in here]
+        solved = np.average([float(row[column]) for row in here], weights=worlds)
+        line(name, d, n, sum(worlds), f"{solved:.1f}", *(gap_text(sets[other], column) for other in OTHERS))
+        leads[name].append([over_all(sets[other], column) for other in OTHERS])
+    for name, each in leads.items():
+        means, errors = np.moveaxis(np.array(each), 2, 0)
+        texts = zip(means.mean(axis=0), np.sqrt((errors**2).sum(axis=0)) / len(each), strict=True)
+        line(f"{name}, mean", "", "", "", "", *(f"{mean:+.1f} ({error:.1f})" for mean, error in texts))
+
+
 def best_of(sets: Sets, column: str) -> str:
     """Return the set that solves most, `even` where others do as well."""
     return max(sets, key=lambda name: (over_all(sets[name], column)[0], name == "even"))
@@ -239,7 +273,10 @@ def main() -> None:
     parser.add_argument("stores", type=Path, nargs="*", help="of the suites fair and apart")
     parser.add_argument("--candidates", type=Path, help="CSV of points_apart, reporting worlds")
     parser.add_argument("--fresh", type=Path, nargs="*", default=[], help="the same, of other worlds")
+    parser.add_argument("--cells", type=Path, nargs="*", default=[], help="CSVs of points_apart, reporting worlds")
     options = parser.parse_args()
+    if options.cells:
+        print_cells(reported(options.cells))
     if options.stores:
         print_gains(joined([read_rows(store) for store in options.stores]))
     if options.candidates:

@@ -1,13 +1,15 @@
 """The paper's network as printed, trained: its sets beside published and other ones, and the loss over the steps.
 
     python -m studies.benchmarks.printed_network --train OUT     # minutes a pool on one core; goes on where it stopped
+    python -m studies.benchmarks.printed_network --train OUT --steps 300 --refine 5000 --only d2-n128-8
     python -m studies.benchmarks.printed_network --table OUT --csv SETS.csv --curves CURVES.csv --picture CURVES.png
 
 A pool is a batch of sets that one network makes of random points.  The network is the published one: points within
 0.35, at most 32, send messages, two linear maps each; three layers of width 64; positions are cut off at the faces.
 Training is 3000 steps of Adam from 1e-3 along a half cosine, weight decay 1e-6, Hickernell's discrepancy, seed 0.
 Rows that differ say in what.  Mazes are asked with k = 10 symmetrised, start and goal linked by the rule: solved sets,
-in percent.  `--only` trains some pools alone.
+in percent.  `--only` trains some pools alone, `--steps` for another number of steps.  `--refine` anneals the sets of
+trained pools on, which the paper does not: NAME-refined in the table.
 """
 
 from __future__ import annotations
@@ -29,7 +31,9 @@ from evenroad.points import draw
 from evenroad.points.bank import TRAINED_FAMILIES, Bank
 from evenroad.points.measures import MEASURES, star_discrepancy
 from evenroad.points.measures.covering import dispersion_bounds
+from evenroad.points.pointset import Origin, PointSet
 from evenroad_studies.connected import connected
+from evenroad_studies.network import refine
 from evenroad_studies.network.printed import Printed, train_printed
 from evenroad_studies.problems import PROBLEMS
 
@@ -66,20 +70,36 @@ def load_pool(path: Path) -> Pool:
         return Pool(int(file["step"]), file["points"].astype(np.float64), file["curve"], float(file["seconds"]))
 
 
-def train_pool(name: str, folder: Path) -> None:
+def train_pool(name: str, config: Printed, folder: Path) -> None:
     """Train a pool and write it into FOLDER/NAME.npz as it gets better."""
-    config, path, curve, begin = POOLS[name], folder / f"{name}.npz", [], time.process_time()
+    path, curve, begin = folder / f"{name}.npz", [], time.process_time()
 
     def seen(step: int, loss: float, points: Floats) -> None:
         if step % EVERY == 0:
             curve.append(loss)
-        if step % (10 * EVERY) == 0:
+        if step % (10 * EVERY) == 0 or step == config.steps:
             seconds = time.process_time() - begin
             with atomic_write(path) as file:
                 np.savez(file, step=step, points=points.astype(np.float32), curve=curve, seconds=seconds)
             print(f"{name}: step {step} of {config.steps}, mean loss {loss:.6f}, {seconds:.0f} s", flush=True)
 
     train_printed(config, rng=0, seen=seen)
+
+
+def refine_pool(name: str, folder: Path, steps: int) -> None:
+    """Anneal the sets of a pool on, and write them into FOLDER/NAME-refined.npz."""
+    config, pool, begin = POOLS[name], load_pool(folder / f"{name}.npz"), time.process_time()
+    bests, curve = np.zeros((len(pool.points), steps)), slice(EVERY - 1, None, EVERY)
+
+    def seen(step: int, _: int, best: float) -> None:
+        bests[(step - 1) // steps, (step - 1) % steps] = best
+
+    origins = (Origin(family="mpmc", objective=config.objective, replica=i) for i in range(len(pool.points)))
+    sets = refine(list(map(PointSet, pool.points, origins)), steps=steps, callback=seen)
+    points, seconds = np.stack([each.points for each in sets]), pool.seconds + time.process_time() - begin
+    with atomic_write(folder / f"{name}-refined.npz") as file:
+        np.savez(file, step=steps, points=points.astype(np.float32), curve=bests.mean(axis=0)[curve], seconds=seconds)
+    print(f"{name}: annealed on from step {pool.step}, mean loss {bests[:, -1].mean():.6f}, {seconds:.0f} s in all")
 
 
 MAZES = {64: (1, 2), 128: (2,), 256: (3,)}
@@ -114,11 +134,14 @@ def row_of(name: str, n: int, d: int, sets: list[Floats]) -> dict[str, str]:
 
 def table(folder: Path, out: Path | None) -> dict[str, Pool]:
     """Print a row for each pool and what stands beside it, and return the pools."""
-    pools = {name: load_pool(folder / f"{name}.npz") for name in POOLS if (folder / f"{name}.npz").exists()}
+    names = [f"{name}{end}" for name in POOLS for end in ("", "-refined")]
+    pools = {name: load_pool(folder / f"{name}.npz") for name in names if (folder / f"{name}.npz").exists()}
     rows, beside = [], set()
     for name, pool in pools.items():
-        n, d = POOLS[name].n, POOLS[name].d
-        rows.append(row_of(name, n, d, list(pool.points)) | {"seconds": f"{pool.seconds:.0f}"})
+        config = POOLS[name.removesuffix("-refined")]
+        n, d = config.n, config.d
+        row = row_of(name, n, d, list(pool.points))
+        rows.append(row | {"steps": str(pool.step), "seconds": f"{pool.seconds:.0f}"})
         for other in BESIDE if (n, d) not in beside else ():
             rows.append(row_of(other, n, d, sets_beside(other, n, d)))
         beside.add((n, d))
@@ -147,6 +170,8 @@ def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("--train", type=Path, help="folder of the pools, made if it is missing")
     parser.add_argument("--only", nargs="*", choices=POOLS, default=list(POOLS))
+    parser.add_argument("--steps", type=int, help="of each training; default: 3000")
+    parser.add_argument("--refine", type=int, default=0, help="steps of annealing after the training")
     parser.add_argument("--table", type=Path, help="folder of the pools")
     parser.add_argument("--csv", type=Path)
     parser.add_argument("--curves", type=Path)
@@ -166,10 +191,12 @@ def main() -> None:
     if options.train:
         options.train.mkdir(exist_ok=True)
         for name in options.only:
-            config = POOLS[name]
+            config = replace(POOLS[name], steps=options.steps or POOLS[name].steps)
             path = options.train / f"{name}.npz"
             if not path.exists() or load_pool(path).step < config.steps:
-                train_pool(name, options.train)
+                train_pool(name, config, options.train)
+            if options.refine:
+                refine_pool(name, options.train, options.refine)
 
 
 if __name__ == "__main__":

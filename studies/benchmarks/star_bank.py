@@ -2,6 +2,7 @@
 
     python -m studies.benchmarks.star_bank               # every kept value computed anew, beside published ones
     python -m studies.benchmarks.star_bank --search 64 128 -d 3 --seed 7      # better sets take the place of kept ones
+    python -m studies.benchmarks.star_bank --from-random 20                   # 64 random sets, annealed and placed anew
 
 In the plane orders of the points are searched and each is placed exactly (``training.order``), in space sets are
 annealed and relaxed (``training.relax``).  Published values that are lower and whose sets we do not have are named.
@@ -17,9 +18,10 @@ from studies.benchmarks.rows import parser_of, write_rows
 import evenroad_studies
 from evenroad import __version__
 from evenroad.points import PointSet, draw
+from evenroad.points.anneal import anneal
 from evenroad.points.bank.star import LARGEST, Record, records
-from evenroad.points.measures import star_discrepancy
-from evenroad_studies.training.order import search_orders
+from evenroad.points.measures import MEASURES, star_discrepancy
+from evenroad_studies.training.order import place_order, search_orders
 from evenroad_studies.training.relax import search_in_space
 
 OPTIMAL = "optimum, Clement, Doerr, Klamroth and Paquete 2023"
@@ -53,6 +55,17 @@ def searched(n: int, d: int, seed: int) -> PointSet:
         tries, sweeps = (8, 30) if n <= 64 else (2, 30) if n <= 128 else (1, 15) if n <= 256 else (1, 3)
         made = search_in_space(n, tries=tries, sweeps=sweeps, rng=rng)
     return PointSet(made.points.astype(np.float32))
+
+
+def print_from_random(n: int, sets: int = 64) -> None:
+    """Print the star discrepancies of random sets in the plane, annealed for the L2 one, and placed anew."""
+    annealed = [anneal(n, 2, MEASURES["star"], steps=2000, rng=seed).points for seed in range(sets)]
+    # The i-th point by x is the order[i]-th by y.
+    orders = [np.argsort(np.argsort(points[np.argsort(points[:, 0]), 1])) for points in annealed]
+    placed = [place_order(order).value for order in orders]
+    for name, values in (("annealed", [star_discrepancy(each) for each in annealed]), ("placed anew", placed)):
+        error = np.std(values, ddof=1) / np.sqrt(sets)
+        print(f"n={n}, {sets} sets, {name}: best {min(values):.4f}, mean {np.mean(values):.4f} ({error:.4f})")
 
 
 def check(d: int) -> int:
@@ -91,7 +104,11 @@ def main() -> int:
     parser.add_argument("-d", type=int, nargs="*", default=[2, 3])
     parser.add_argument("--search", type=int, nargs=2, metavar=("FIRST", "LAST"), help="numbers of points")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--from-random", type=int, metavar="N", help="number of points")
     options = parser.parse_args()
+    if options.from_random:
+        print_from_random(options.from_random)
+        return 0
     if not options.search:
         return int(sum(check(d) for d in options.d) > 0)
     first, last = options.search

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from evenroad.points import load_points
-from evenroad.points.measures import star_discrepancy
+from evenroad.points.measures import MEASURES, star_discrepancy
 
 MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1, "-o", "sets")
 
@@ -42,6 +42,10 @@ def test_the_published_network_makes_a_batch_and_the_same_line_reads_it(run, tmp
     assert run(*line)[1] == out
     assert run(*line[:-3], 5, *line[-2:])[0] == 2
     assert run(*line, "--sets", 4)[0] == 2
+    assert run(*line, "--refine", 20)[0] == 0
+    before, after = (load_points(tmp_path / "sets" / f"{name}-0002.npz") for name in ("set", "refined"))
+    assert MEASURES["hickernell"].rooted(after) < MEASURES["hickernell"].rooted(before)
+    assert after.origin.method == "network as printed+annealed"
     assert run("train", "-n", 12, "-d", 2, "--batch", 3, "-o", "other")[0] == 2
 
 

@@ -51,7 +51,7 @@ class Train:
     steps: int = 5000
     """Steps of the optimiser."""
     refine: int = 0
-    """mpmc: anneal the network's sets for so many more steps, and write them as OUT/refined-0000.npz, ..."""
+    """mpmc, printed: anneal the network's sets for so many more steps, and write them as OUT/refined-0000.npz, ..."""
     start: str | None = None
     """mpmc: what the network moves: sobol, kronecker, halton, korobov or uniform (default: kronecker in d = 2, but for
     prefixes; else sobol)."""
@@ -107,7 +107,7 @@ class Train:
         require_points_for(parse_objective(self.objective), self.n)
         of_network = {"refine": self.refine, "start": self.start, "judge": self.judge != "objective"}
         for name, given in of_network.items():
-            if given and self._chosen != "mpmc":
+            if given and self._chosen != "mpmc" and (name, self._chosen) != ("refine", "printed"):
                 raise InvalidValue(f"--{name} does not go with the method {self._chosen!r}")
         if self.batch is not None and self._chosen != "printed":
             raise InvalidValue(f"--batch does not go with the method {self._chosen!r}")
@@ -151,7 +151,10 @@ class Train:
         return NetworkConfig(self.n, self.d, self.objective, steps=steps, start=start, judge=judge)
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
-        sets = train_many(self._config(), self.sets, **self._told(callback))
+        return self._annealed_on(train_many(self._config(), self.sets, **self._told(callback)), callback)
+
+    def _annealed_on(self, sets: tuple[PointSet, ...], callback: Callback) -> tuple[PointSet, ...]:
+        """Return the sets of a network, refined if that is asked for."""
         if not self.refine:
             return sets
         claim_folder(self.out, {"steps": self.refine, "schedule": SCHEDULE}, "refined.json")
@@ -168,29 +171,33 @@ class Train:
         from evenroad_studies.network.printed import train_printed
 
         config = self._printed_config()
+
+        def seen(step: int, loss: float, _: object) -> None:
+            callback(step, config.steps, loss)
+
         claim_folder(self.out, {"method": "printed", **asdict(config), "seed": self.seed}, REQUEST_FILE)
         paths = [self.out / set_name(i) for i in range(config.sets)]
         try:
-            return tuple(map(load_points, paths))
+            sets = tuple(map(load_points, paths))
         except BrokenFile:
-            pass  # missing or damaged: made (again)
-        sets, _ = train_printed(config, rng=self.seed, seen=lambda step, loss, _: callback(step, config.steps, loss))
-        for path, points in zip(paths, sets, strict=True):
-            save_points(path, points)
-        return sets
+            # Missing or damaged: made (again).
+            sets, _ = train_printed(config, rng=self.seed, seen=seen)
+            for path, points in zip(paths, sets, strict=True):
+                save_points(path, points)
+        return self._annealed_on(sets, callback)
 
     def _refined(self, i: int, points: PointSet, callback: Callback) -> PointSet:
         """Refine set i and save it at once, or read it where an earlier run did."""
         from evenroad_studies.network import refine
 
-        path = self.out / f"refined-{i:04d}.npz"
+        path, number = self.out / f"refined-{i:04d}.npz", self.batch or self.sets
         try:
             return load_points(path)
         except BrokenFile:
             pass  # missing or damaged: made (again)
 
         def counted(step: int, steps: int, best: float) -> None:
-            callback(i * steps + step, self.sets * steps, best)
+            callback(i * steps + step, number * steps, best)
 
         (refined,) = refine((points,), steps=self.refine, callback=counted)
         save_points(path, refined)
