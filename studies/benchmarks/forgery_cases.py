@@ -52,6 +52,8 @@ limits:
   turn: [-1.5, 1.5]
 """
 MESH = "obstacles:\n  wall: {shape: mesh, file: wall.stl, xyz: [1.65, 0.1, 0.0]}\n"
+PIECES = MESH.replace("xyz", "clearance: 0.001, xyz")
+"""A box in an open shell around all, with a triangle that comes twice at a corner of the shell."""
 CLOUD = "obstacles:\n  scan: {shape: cloud, file: scan.xyz, radius: 0.02, xyz: [1.6, 0.0, 0.0]}\n"
 
 
@@ -82,7 +84,8 @@ class Case:
 
 def cases(folder: Path) -> list[Case]:
     """Return a case of each kind; their files are in folders of their own."""
-    made = [_arm(folder / name, name, scene) for name, scene in (("path", SOLID), ("mesh", MESH), ("cloud", CLOUD))]
+    scenes = {"path": SOLID, "mesh": MESH, "pieces": PIECES, "cloud": CLOUD}
+    made = [_arm(folder / name, name, scene) for name, scene in scenes.items()]
     t = np.linspace(0.0, 1.0, 60)[:, np.newaxis]
     bent = (1 - t) ** 2 * PATH[0] + 2 * t * (1 - t) * PATH[1] + t**2 * PATH[2]
     made += [_arm(folder / "curve", "curve", SOLID, states=bent), _arm(folder / "own", "own", MESH, embed=True)]
@@ -103,6 +106,8 @@ def _arm(folder: Path, name: str, scene: str, keep=None, states=None, embed: boo
     (folder / "scene.yaml").write_text(scene)
     if scene is MESH:
         trimesh.creation.box((0.2, 0.4, 0.3)).export(folder / "wall.stl")
+    if scene is PIECES:
+        _wall_in_a_shell().export(folder / "wall.stl")
     if scene is CLOUD:
         rng = np.random.default_rng(5)
         np.savetxt(folder / "scan.xyz", rng.uniform((-0.02, -0.3, -0.3), (0.02, 0.3, 0.3), (40, 3)), "%.9f")
@@ -112,6 +117,15 @@ def _arm(folder: Path, name: str, scene: str, keep=None, states=None, embed: boo
         world = kept_world(world, (keep,), PATH[0], "fore")
     certify(world, PATH, sources, folder / "arm.cert", states=states)
     return Case(name, (folder / "arm.cert").read_bytes(), sources, _is_false)
+
+
+def _wall_in_a_shell() -> trimesh.Trimesh:
+    wall, shell = trimesh.creation.box((0.2, 0.4, 0.3)), trimesh.creation.icosphere(1, 2.2)
+    shell.apply_translation((-1.65, -0.1, 0.0))
+    corner = shell.triangles[0, 0]
+    flap = np.array([[corner, 1.1 * corner, corner * (1.0, 1.05, 1.0)]] * 2)
+    corners = np.concatenate([wall.triangles, shell.triangles, flap]).reshape(-1, 3)
+    return trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), process=False)
 
 
 def _no_path(folder: Path, name: str, position_only: bool | None = None) -> Case:
@@ -165,9 +179,9 @@ def _is_false(data: bytes, sources: Sources) -> bool:
 
 
 def _simple(obstacle, sources: Sources):
-    """Return a mesh, which is a box, as one, and a cloud as balls."""
+    """Return a mesh, whose closed piece is a box, as one, and a cloud as balls."""
     if obstacle.shape == "mesh":
-        box = trimesh.load_mesh(sources.scene.parent / "wall.stl")
+        box, *_ = trimesh.load_mesh(sources.scene.parent / "wall.stl").split(only_watertight=True)
         middle = np.array(obstacle.xyz) + np.array(obstacle.rotation).reshape(3, 3) @ box.bounds.mean(0)
         return [er.Box(tuple(box.extents), xyz=tuple(middle), name=obstacle.name)]
     if obstacle.shape == "cloud":
