@@ -16,6 +16,7 @@ import argparse
 import csv
 import re
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -162,7 +163,7 @@ def main() -> None:
     parser.add_argument("--queries", type=int, default=3, help="of each robot")
     parser.add_argument("--out", type=Path, default=Path("out/certificates.csv"))
     parser.add_argument("--seconds", type=float, default=1.0, help="for one plan")
-    parser.add_argument("--limit", type=float, default=60.0, help="seconds for one robot")
+    parser.add_argument("--limit", type=float, default=60.0, help="seconds of processor for one robot")
     parser.add_argument("--minutes", type=float, default=600.0, help="for this slice")
     parser.add_argument("--keep", type=Path, help="a folder for certificates that are refused")
     parser.add_argument("--one", type=int, nargs="*", help=argparse.SUPPRESS)
@@ -198,8 +199,16 @@ def _ask(path: str, asked: list[int], more: list[str], limit: float, out: Path) 
             csv.DictWriter(file, COLUMNS).writeheader()
         file.flush()
         try:
-            done = subprocess.run(command, stdout=file, stderr=subprocess.PIPE, text=True, timeout=limit)
+            done = subprocess.run(
+                command,
+                stdout=file,
+                stderr=subprocess.PIPE,
+                text=True,
+                timeout=20.0 * limit,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (int(limit), int(limit))),
+            )
             failed = (done.stderr.strip().splitlines() or ["no reason"])[-1] if done.returncode else ""
+            failed = f"out of time: {limit:.0f} s" if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else failed
         except subprocess.TimeoutExpired:
             failed = f"out of time: {limit:.0f} s"
         if failed:
