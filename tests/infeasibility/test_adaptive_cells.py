@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from scipy.ndimage import label
 
-from evenroad.infeasibility.adaptive_cells import is_cut_off
+from evenroad._native.infeasibility import reached_cells
+from evenroad.infeasibility.adaptive_cells import search_cells
 from evenroad.infeasibility.prefix_cells import Bodies, piece_of
 from evenroad.infeasibility.proof import inner_bodies
 from evenroad.robot import ArmWorld, Scene, load_robot
 from evenroad.scenes.obstacle import Obstacle
 from evenroad.scenes.scene import smaller_scene
+from tests.infeasibility.cells_by_scipy import ended as by_scipy
 from tests.robots.kernel_arms import random_rotation, random_scene, random_tree, walk
 from tests.robots.mesh_arms import write_fork_arm
 from tests.robots.post_scenes import at, flat_arm, free_places, posts
@@ -34,11 +36,54 @@ def test_what_is_cut_off_a_finer_flood_confirms():
         bodies = Bodies(world.robot, world.with_bodies, world.margin)
         for i, k in combinations(range(len(ends)), 2):
             apart.append(ours[i] != ours[k])
-            shown.append(is_cut_off(bodies, ends[i], ends[k : k + 1], 2, 20_000))
+            shown.append(search_cells(bodies, ends[i], ends[k : k + 1], 2, 20_000) == "apart")
     apart, shown = np.array(apart), np.array(shown)
     assert not (shown & ~apart).any()
     # Of those that are apart nearly all are shown to be.
     assert shown.sum() >= 0.8 * apart.sum() > 10
+
+
+@pytest.mark.parametrize(
+    ("kind", "joints", "most"), [("revolute", 2, 9_000), ("continuous", 2, 9_000), ("revolute", 1, 500)]
+)
+def test_searches_end_as_those_of_scipys_graphs(kind, joints, most):
+    """Paths, proofs, and searches that neither ends; goals are one or several, and some are blocked."""
+    found = []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        angles, distances = rng.uniform(-3.0, 3.0, 6), np.append(rng.uniform(0.2, 1.0, 5), 0.3)
+        world = ArmWorld(flat_arm(kind), posts(*map(at, angles, distances), radius=0.03))
+        ends, bodies = free_places(world, rng, 6), Bodies(world.robot, world.with_bodies, world.margin)
+        blocked = rng.uniform(-3.0, 3.0, (50, 2))
+        for goals in (ends[1:2], ends[2:3], ends[3:], blocked[~world.valid(blocked)][:1]):
+            found.append(search_cells(bodies, ends[0], goals, joints, most))
+            assert found[-1] == by_scipy(bodies, ends[0], goals, joints, most)
+    assert len(set(found)) > 1
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_cells_that_are_reached_are_a_component_of_scipys(seed):
+    """In grids of one to three axes, some of which are circles: those are laid out three times."""
+    rng = np.random.default_rng(seed)
+    count = rng.integers(2, 9, int(rng.integers(1, 4)))
+    wraps = rng.random(len(count)) < 0.5
+    free = rng.random(count) < 0.6
+    first = tuple(rng.integers(count))
+    free[first] = True
+    repeats = np.where(wraps, 3, 1)
+    pieces = label(np.tile(free, repeats))[0]
+    reached = pieces == pieces[tuple(np.array(first) + np.where(wraps, count, 0))]
+    while True:
+        # What one turn reaches, others do.
+        shape = [each for pair in zip(repeats, count, strict=True) for each in pair]
+        folded = reached.reshape(shape).any(axis=tuple(range(0, 2 * len(count), 2)))
+        wider = np.isin(pieces, np.unique(pieces[np.tile(folded, repeats) & (pieces > 0)]))
+        if (wider == reached).all():
+            break
+        reached = wider
+    at_first = int(np.ravel_multi_index(first, tuple(count)))
+    ours = reached_cells(free.ravel(), count, wraps, at_first)
+    assert (ours.reshape(free.shape) == folded).all()
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -51,7 +96,7 @@ def test_no_walk_that_is_proved_free_leads_to_what_is_cut_off(seed):
         place = walk(world, rng, start, 25)[-1:]
         for joints, most in ((1, 300), (2, 3_000), (3, 6_000)):
             if joints <= world.space.dim:
-                assert not is_cut_off(bodies, start, place, joints, most)
+                assert search_cells(bodies, start, place, joints, most) != "apart"
 
 
 @pytest.mark.parametrize("as_mesh", [False, True])
@@ -67,7 +112,7 @@ def test_walks_of_true_shapes_stay_in_the_piece_that_they_start_in(tmp_path, as_
         for start in ends[:2]:
             places = walk(world, rng, start, 20)
             for joints, most in ((2, 4_000), (3, 20_000)):
-                assert not is_cut_off(bodies, start, places[-1:], joints, most)
+                assert search_cells(bodies, start, places[-1:], joints, most) != "apart"
                 piece = piece_of(bodies, start, (np.inf,) * joints, most)
                 assert piece is None or all(map(piece.holds, places))
                 closed += piece is not None and not piece.reached.all()
@@ -89,9 +134,9 @@ def test_true_shapes_close_a_way_that_bodies_inside_of_them_leave_open(tmp_path)
     bars = [Obstacle.of(f"bar{i}", "box", (0.05, 0.05, 0.5), (*at(angle, 0.3), 0.6)) for i, angle in enumerate((1, -2))]
     bodies = inner_bodies(ArmWorld(robot, Scene(tuple(bars), name="bars")))
     start, beyond, beside = np.array([0.0, 0.2]), np.array([[2.0, 0.1]]), np.array([[0.3, -0.4]])
-    assert is_cut_off(bodies, start, beyond, 2, 8_000)
-    assert not is_cut_off(replace(bodies, shapes=None), start, beyond, 2, 8_000)
-    assert not is_cut_off(bodies, start, beside, 2, 20_000)
+    assert search_cells(bodies, start, beyond, 2, 8_000) == "apart"
+    assert search_cells(replace(bodies, shapes=None), start, beyond, 2, 8_000) != "apart"
+    assert search_cells(bodies, start, beside, 2, 20_000) != "apart"
 
 
 def test_a_ball_about_any_place_of_a_smaller_obstacle_lies_in_the_obstacle():

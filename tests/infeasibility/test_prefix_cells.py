@@ -8,7 +8,7 @@ import pytest
 from scipy.ndimage import label
 
 from evenroad.geometry.shapes import Capsule
-from evenroad.infeasibility.adaptive_cells import is_cut_off
+from evenroad.infeasibility.adaptive_cells import search_cells
 from evenroad.infeasibility.prefix_cells import BEYOND, SLACK, Bodies, CellTests, first_links, piece_of, thinner
 from evenroad.infeasibility.proof import apart, inner_bodies
 from evenroad.planning import plan
@@ -276,9 +276,9 @@ def test_a_start_in_a_blocked_cell_or_in_none_shows_nothing():
     for start in (blocked, beyond):
         assert piece_of(bodies(world), start, (np.inf,), 200) is None
     behind = np.array([2.0, 0.5])
-    assert is_cut_off(bodies(world), free, behind[np.newaxis], 1, 4_000)
+    assert search_cells(bodies(world), free, behind[np.newaxis], 1, 4_000) == "apart"
     for start, goals in ((blocked, [behind]), (free, [blocked]), (free, [behind, blocked]), (beyond, [behind])):
-        assert not is_cut_off(bodies(world), start, np.array(goals), 1, 4_000)
+        assert search_cells(bodies(world), start, np.array(goals), 1, 4_000) != "apart"
 
 
 def test_where_a_thinner_body_touches_its_cell_is_blocked_throughout():

@@ -262,9 +262,9 @@ class ArmWorld(Changes, OneOrMany):
 
         Obstacles reach less far by what they are to `spare`, or farther where that is less than 0 [m].
         """
-        # Ranges are those of the robot.
-        scene = smaller_scene(self.scene, spare) if spare > 0.0 else without_limits(self.scene)
-        return replace(self, robot=robot, scene=scene, clearance=self.clearance + max(-spare, 0.0)).valid
+        scene = smaller_scene(self.scene, spare) if spare > 0.0 else self.scene
+        more = {"robot": robot, "_prepared": prepared(robot)}
+        return self._copy(scene, self.clearance + max(-spare, 0.0), **more).valid
 
     @once_property
     def _measuring(self) -> Checker:

@@ -79,13 +79,13 @@ def prepared(robot: Robot) -> Prepared:
     except TypeError:
         # Lists instead of tuples cannot be a key.
         return _kept.__wrapped__(values, held)
-    if len(_recent) >= 32:
+    if len(_recent) >= 128:
         _recent.clear()
     _recent[id(robot)] = robot, dict(robot.held), found
     return found
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=128)
 def _kept(values: tuple[Any, ...], held: tuple[tuple[str, float], ...]) -> Prepared:
     robot = Robot(**dict(zip(_FIELDS, values, strict=True)), held=dict(held))
     space = joint_space(robot)

@@ -14,7 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
-from evenroad._time_limit import look_at_clock, require_time_for
+from evenroad._native.infeasibility import reached_cells
+from evenroad._shared import recent
+from evenroad._time_limit import look_at_clock
 from evenroad.collision.native_robot import shape_speeds
 from evenroad.collision.placed_capsules import LARGEST_EXCESS, place_capsule, speed_bounds
 from evenroad.collision.prepared_robots import joint_space
@@ -34,8 +36,6 @@ _SLOWEST = 0.05
 """Smallest speed of links for the choice of the cells' size [m/rad]."""
 _AT_ONCE = 16_384
 """Number of cells that are checked together."""
-_LABELLED = 5e-8
-"""Time per cell to label components, which is not interrupted [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,29 +114,24 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
     cells = cells_around(first, configuration[: len(reach)], np.array(reach), most)
     if bodies.shapes is None and not thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin).capsules:
         return None
-    require_time_for("scipy.ndimage")
-    # Imported late: most plans need no proof.
-    from scipy.ndimage import label
-
-    free = _free_cells(bodies, first, cells)
-    look_at_clock(_LABELLED * free.size)
-    number = _joined(label(free)[0], cells.whole)
-    cell = cells.cell(configuration[: len(reach)])
+    free, cell = _free_cells(bodies, first, cells), cells.cell(configuration[: len(reach)])
     # A configuration in a blocked cell, or in none, contradicts the check.
-    if cell is None or number[cell] == 0:
+    if cell is None or not free[cell]:
         return None
-    reached = number == number[cell]
+    at = int(np.ravel_multi_index(cell, free.shape))
+    reached: Bools = reached_cells(free.ravel(), cells.count, cells.whole, at).reshape(free.shape)
     space = joint_space(first)
     open_below = np.where(np.isfinite(cells.period), ~cells.whole, cells.low > space.low)
     open_above = np.where(np.isfinite(cells.period), ~cells.whole, cells.high < space.high)
     for k in range(len(reach)):
         # A component must not reach a side of the cells that is not a limit of a joint.
-        below, above = np.moveaxis(reached, k, 0)[[0, -1]].reshape(2, -1).any(axis=1)
+        below, above = reached.take(0, axis=k).any(), reached.take(-1, axis=k).any()
         if (below and open_below[k]) or (above and open_above[k]):
             return None
     return Piece(cells, reached)
 
 
+@recent
 def first_links(robot: Robot, joints: int) -> Robot:
     """Return the robot with the bodies that its first joints move: other joints are held, later bodies are removed.
 
@@ -172,8 +167,14 @@ def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
 
     `half`, (dim,), are half the sides of a cell [rad or m].
     """
+    return _thinner(robot, tuple((_speeds(robot) @ half).tolist()), slack)
+
+
+@recent
+def _thinner(robot: Robot, moved: tuple[float, ...], slack: float) -> Robot:
+    """Return the robot with bodies thinner by the movement of each capsule, and by a slack [m]."""
     kept = []
-    for capsule, far in zip(robot.capsules, (_speeds(robot) @ half).tolist(), strict=True):
+    for capsule, far in zip(robot.capsules, moved, strict=True):
         radius = capsule.radius - far - slack
         # Spheres that cover a capsule are larger than it, unless it is a sphere.
         radius /= 1.0 if capsule.a == capsule.b else LARGEST_EXCESS
@@ -181,10 +182,35 @@ def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
     return replace(robot, capsules=tuple(kept))
 
 
+@recent
+def _thicker(robot: Robot, moved: tuple[float, ...]) -> Robot:
+    """Return the robot with bodies thicker by the movement of each capsule [m]."""
+    thick = [replace(capsule, radius=capsule.radius + far) for capsule, far in zip(robot.capsules, moved, strict=True)]
+    return replace(robot, capsules=tuple(thick))
+
+
+@recent
 def _speeds(robot: Robot) -> Floats:
     """Return the largest speeds at which joints move the segments of capsules, (capsules, dim) [m/rad or m/m]."""
     tree = moving_tree(robot)
     return speed_bounds(tree, [place_capsule(capsule, tree) for capsule in robot.capsules], [], robot)[0]
+
+
+@recent
+def _moving_links(first: Robot, true: Robot) -> list[tuple[Robot, Floats]]:
+    """Return, for each moving link with true shapes, a robot of it alone, and the speeds at which joints move it."""
+    links, tree = [], moving_tree(first)
+    for link in dict.fromkeys(capsule.link for capsule in first.capsules):
+        capsules, inner, shapes = (
+            tuple(each for each in true.capsules if each.link == link),
+            tuple(each for each in true.inner or () if each.link == link),
+            tuple(each for each in true.shapes if each.link == link),
+        )
+        robot = replace(first, pairs=(), padding=(), capsules=capsules, inner=inner, shapes=shapes)
+        speeds = shape_speeds(robot, tree, {link: 0})[0]
+        if shapes and speeds.any():
+            links.append((robot, speeds))
+    return links
 
 
 class CellTests:
@@ -196,21 +222,7 @@ class CellTests:
 
     def __init__(self, bodies: Bodies, first: Robot) -> None:
         self._bodies, self._first, self._slack = bodies, first, SLACK + 4.0 * bodies.margin
-        true, tree = bodies.shapes, moving_tree(first)
-        self._links: list[tuple[Robot, Floats]] = []
-        """For each moving link with true shapes, a robot of that link alone, and the speeds at which joints move it."""
-        if true is None:
-            return
-        for link in dict.fromkeys(capsule.link for capsule in first.capsules):
-            capsules, inner, shapes = (
-                tuple(each for each in true.capsules if each.link == link),
-                tuple(each for each in true.inner or () if each.link == link),
-                tuple(each for each in true.shapes if each.link == link),
-            )
-            robot = replace(first, pairs=(), padding=(), capsules=capsules, inner=inner, shapes=shapes)
-            speeds = shape_speeds(robot, tree, {link: 0})[0]
-            if shapes and speeds.any():
-                self._links.append((robot, speeds))
+        self._links = _moving_links(first, bodies.shapes) if bodies.shapes else []
 
     def unblocked(self, half: Floats, middles: Floats) -> Bools:
         """Return which cells, of these middles, (n, dim), and half sides, (dim,), are not blocked throughout."""
@@ -228,11 +240,8 @@ class CellTests:
         No proof relies on the result.
         """
         if not self._links:
-            thick = [
-                replace(capsule, radius=capsule.radius + far)
-                for capsule, far in zip(self._first.capsules, (_speeds(self._first) @ half).tolist(), strict=True)
-            ]
-            return self._bodies.in_scene(replace(self._first, capsules=tuple(thick)))(middles)
+            thick = _thicker(self._first, tuple((_speeds(self._first) @ half).tolist()))
+            return self._bodies.in_scene(thick)(middles)
         free = np.ones(len(middles), dtype=np.bool_)
         for robot, speeds in self._links:
             far = float(speeds @ half)
@@ -248,9 +257,7 @@ def cells_around(first: Robot, configuration: Floats, reach: Floats, most: int) 
     wraps = np.isfinite(period)
     low = np.where(wraps, configuration - reach, np.maximum(space.low, configuration - reach))
     high = np.where(wraps, configuration + reach, np.minimum(space.high, configuration + reach))
-    tree = moving_tree(first)
-    placed = [place_capsule(capsule, tree) for capsule in first.capsules]
-    speeds = speed_bounds(tree, placed, [], first)[0].max(axis=0)
+    speeds = _speeds(first).max(axis=0)
     # Half a cell along any joint moves the links by about the same distance; more cells reduce it.
     lengths = np.maximum(speeds, _SLOWEST) * (high - low)
     count = np.ceil(lengths * (most / np.prod(lengths)) ** (1 / len(reach))).astype(int)
@@ -267,20 +274,3 @@ def _free_cells(bodies: Bodies, first: Robot, cells: Cells) -> Bools:
         look_at_clock()
         free[begin : begin + _AT_ONCE] = tests.unblocked(0.5 * cells.size, q)
     return free.reshape(shape)
-
-
-def _joined(number: npt.NDArray[np.int32], whole: Bools) -> npt.NDArray[np.int32]:
-    """Return the numbers of pieces, 0 for blocked cells; pieces that meet across a full turn of a joint are joined."""
-    if not whole.any():
-        return number
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    for k in np.flatnonzero(whole):
-        first, last = np.moveaxis(number, k, 0)[[0, -1]].reshape(2, -1)
-        both = (first > 0) & (last > 0)
-        count = int(number.max()) + 1
-        pairs = coo_matrix((np.ones(int(both.sum())), (first[both], last[both])), shape=(count, count))
-        # Nothing is joined to 0, the number of blocked cells.
-        number = connected_components(pairs, directed=False)[1][number]
-    return number

@@ -9,8 +9,9 @@ from typing import Protocol
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
+from evenroad._shared import recent
 from evenroad._time_limit import look_at_clock
-from evenroad.infeasibility.adaptive_cells import is_cut_off
+from evenroad.infeasibility.adaptive_cells import search_cells
 from evenroad.infeasibility.blocking_values import pieces_between_walls
 from evenroad.infeasibility.prefix_cells import BEYOND, Bodies, Piece, piece_of
 from evenroad.poses.chain import Chain
@@ -113,15 +114,30 @@ def apart(
 def inner_bodies(world: InScene) -> Bodies:
     """Return bodies inside the robot's true shapes, and these shapes."""
     robot = world.robot
-    within = replace(robot, capsules=robot.inner or (), inner=None, shapes=())
-    return Bodies(within, world.with_bodies, world.margin, robot)
+    return Bodies(_inner_robot(robot, _held(robot)), world.with_bodies, world.margin, robot)
 
 
 def outer_bodies(world: InScene) -> Bodies:
     """Return the bodies of planning, without the pairs that hulls decide."""
-    sharp = {hull.link for hull in world.robot.hulls if not hull.is_round}
-    pairs = tuple(pair for pair in world.robot.pairs if sharp.isdisjoint(pair))
-    return Bodies(replace(world.robot, pairs=pairs), world.with_bodies, world.margin)
+    robot = world.robot
+    return Bodies(_outer_robot(robot, _held(robot)), world.with_bodies, world.margin)
+
+
+def _held(robot: Robot) -> tuple[tuple[str, float], ...]:
+    """Return the values of joints outside the group, the only part of a robot that can change, as a key."""
+    return tuple(sorted(robot.held.items()))
+
+
+@recent
+def _inner_robot(robot: Robot, held: tuple[tuple[str, float], ...]) -> Robot:
+    return replace(robot, held=dict(held), capsules=robot.inner or (), inner=None, shapes=())
+
+
+@recent
+def _outer_robot(robot: Robot, held: tuple[tuple[str, float], ...]) -> Robot:
+    sharp = {hull.link for hull in robot.hulls if not hull.is_round}
+    pairs = tuple(pair for pair in robot.pairs if sharp.isdisjoint(pair))
+    return replace(robot, held=dict(held), pairs=pairs)
 
 
 def shown_by(
@@ -148,9 +164,12 @@ def shown_by(
         if joints > len(group):
             break
         look_at_clock()
-        if joints == SPLIT and unreached and is_cut_off(bodies, start, np.array(unreached), joints, split):
+        ended = search_cells(bodies, start, np.array(unreached), joints, split) if joints == SPLIT and unreached else ""
+        if ended == "apart":
             unreached = []
-        piece = piece_of(bodies, start, reach, cells) if unreached or undecided else None
+        # Where clear cells lead to a goal, equal cells prove nothing either.
+        is_open = ended == "joined" and len(unreached) == 1
+        piece = piece_of(bodies, start, reach, cells) if (unreached and not is_open) or undecided else None
         if piece is not None:
             unreached = [goal for goal in unreached if piece.holds(goal)]
             undecided = [task for task in undecided if not is_beyond(piece, *task)]

@@ -38,6 +38,7 @@ NB_MODULE(EVENROAD_MODULE, module) {
   evenroad::bind::add_certificates(module);
   evenroad::bind::add_drive(module);
   evenroad::bind::add_flight(module);
+  evenroad::bind::add_infeasibility(module);
   evenroad::bind::add_picture(module);
   evenroad::bind::add_planning(module);
   evenroad::bind::add_points(module);

@@ -24,6 +24,7 @@ void add_chain(nanobind::module_& robot);
 void add_drive(nanobind::module_& module);
 void add_flight(nanobind::module_& module);
 void add_further_limits(nanobind::module_& trajectory);
+void add_infeasibility(nanobind::module_& module);
 void add_keeps(nanobind::module_& robot);
 void add_picture(nanobind::module_& module);
 void add_planning(nanobind::module_& module);
