@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Mapping
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
@@ -71,6 +70,9 @@ def among_names(what: str, name: str, known: Iterable[str], listing: str) -> Unk
     """Return the error of a name beside many known ones, with at most six that are near to it or have a part of it."""
     names, plain = sorted(known), name.casefold()
     parts = [part for part in re.split(r"[^a-z]+", plain) if len(part) > 2]
+    # Imported late, as below: most programs name nothing wrong.
+    from difflib import get_close_matches
+
     near = get_close_matches(plain, names, 3, 0.6)
     near += [each for each in names if each not in near and any(part in each or each in part for part in parts)]
     meant = f"near names: {', '.join(near[:6])}; " if near else ""
@@ -97,6 +99,8 @@ def _answer(name: str, table: Mapping[str, Collection[str]]) -> str | None:
 
 def _near_names(name: str, known: Iterable[str]) -> list[str]:
     """Return the known name that differs from this one in few letters, in capitals or in underscores."""
+    from difflib import get_close_matches
+
     names, plain = {_plain(each): each for each in known}, _plain(name)
     return [names[each] for each in ([plain] if plain in names else get_close_matches(plain, names, 1, _NEAR))]
 

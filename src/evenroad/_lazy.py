@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import sys
 from collections.abc import Callable
+from types import ModuleType
 
 
 def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
@@ -24,11 +26,22 @@ def names_on_use(package: str, file: str) -> tuple[list[str], Callable[[str], ob
             raise AttributeError(f"module {package!r} has no attribute {name!r}{hint and '; '}{hint}")
         home, there = homes[name]
         if home == package:
-            return importlib.import_module(f"{package}.{there}")
-        module = importlib.import_module(home)
+            return _loaded(f"{package}.{there}")
+        module = _loaded(home)
         # A name may be a module of its own.
-        value = getattr(module, there) if hasattr(module, there) else importlib.import_module(f"{home}.{there}")
+        value = getattr(module, there) if hasattr(module, there) else _loaded(f"{home}.{there}")
         setattr(sys.modules[package], name, value)
         return value
 
     return list(homes), load, lambda: sorted(homes)
+
+
+def _loaded(name: str) -> ModuleType:
+    """Return a module.  While it loads, nothing is garbage, and the collector would look through all of it again."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        return importlib.import_module(name)
+    finally:
+        if collects:
+            gc.enable()

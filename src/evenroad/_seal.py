@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import logging
 import os
 from collections.abc import Mapping
 
@@ -53,6 +52,9 @@ def read_sealed(path: str | os.PathLike[str], name: str, what: str) -> bytes | N
     content = kept[kept.find(b"\n") + 1 :]
     if kept == sealed(content, name):
         return content
+    # Imported late: hardly any file is damaged.
+    import logging
+
     logging.getLogger("evenroad").warning("evenroad: %s kept in %s was damaged, and is made again", what, path)
     try:
         os.unlink(path)

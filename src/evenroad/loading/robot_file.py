@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import unquote
 
 from evenroad.errors import BrokenFile
 from evenroad.loading.xml_file import read_xml
@@ -63,6 +62,9 @@ def _candidates(name: str, file: RobotFile) -> Iterator[Path]:
     if not separator:
         yield folder / name
         return
+    # Imported late: it brings much, and few meshes are URLs.
+    from urllib.parse import unquote
+
     rest = unquote(rest)
     if scheme == "file":
         yield Path(rest)

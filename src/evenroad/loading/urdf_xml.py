@@ -15,7 +15,6 @@ from evenroad._understood import require_understood
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.loading.robot_file import RobotFile, package_folder
 from evenroad.loading.urdf_kinds import IGNORED, LIMITS, ROBOT, SIZES, SOFT
-from evenroad.loading.xacro.expand import expanded, is_xacro
 from evenroad.loading.xml_file import read_xml
 
 _SHAPES = (*SIZES, "mesh")
@@ -93,11 +92,19 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
 def read_robot_xml(file: RobotFile) -> Element:
     """Return the ``<robot>`` element of a URDF or xacro as it stands there; raises BrokenFile as `read_urdf_xml`."""
     root = read_xml(file.path, "robot", "a URDF")
-    return _expanded(file) if file.path.suffix == ".xacro" or is_xacro(root) else root
+    return _expanded(file) if file.path.suffix == ".xacro" or _is_xacro(root) else root
+
+
+def _is_xacro(root: Element) -> bool:
+    """Return whether an XML has elements of xacro."""
+    return any(element.tag.startswith("xacro:") for element in root.iter())
 
 
 def _expanded(file: RobotFile) -> Element:
     """Return the URDF that a xacro stands for."""
+    # Imported late: a plain URDF needs none of it.
+    from evenroad.loading.xacro.expand import expanded
+
     return expanded(file.path, dict(file.arguments), lambda name: package_folder(name, file), dict(file.packages))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, field, replace
 from time import perf_counter as now
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import BEFORE_PROOF, BEFORE_REASONS, Budget, Stopwatch
 from evenroad.roadmap.edges import BOUND, EdgeCost, edge_costs, links_among
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
-from evenroad.roadmap.rules import Rule, ascending
 from evenroad.roadmap.search import (
     FREE,
     NOT_FOUND,
@@ -32,6 +32,9 @@ from evenroad.roadmap.search import (
     search_problem,
 )
 from evenroad.world import ShowsApart, World
+
+if TYPE_CHECKING:
+    from evenroad.roadmap.rules import Rule
 
 NO_LIMIT = 2**31 - 1
 """Number of motions that means no limit."""
@@ -133,6 +136,9 @@ class Attempt:
 
     def _edges(self, rule: Rule, configurations: Floats, n: int) -> Ints32:
         """Return the edges among `n` milestones and the start and goals behind them, (m, 2)."""
+        # Imported late: trees have no rule.
+        from evenroad.roadmap.rules import ascending
+
         space, terminals = self.world.space, configurations[n:]
         look_at_clock()
         edges = rule.edges(configurations, space, terminals=len(terminals))

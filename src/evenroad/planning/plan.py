@@ -15,17 +15,14 @@ from evenroad.planning.diagnose import with_reasons
 from evenroad.planning.finish import finished
 from evenroad.planning.make_result import out_of_time, unreached
 from evenroad.planning.planners import planner_of, unknown_planner
-from evenroad.planning.planners.prm import PRM
 from evenroad.planning.planners.trees import RRTConnect, default_planner
 from evenroad.planning.problem import Interrupted, Planner, Problem, Wanted
 from evenroad.planning.read_problem import read_problem
 from evenroad.planning.reading import Goal, PathLike, Reading
 from evenroad.planning.result import PlanResult
-from evenroad.planning.world_roadmap import WorldRoadmap
 from evenroad.points.pointset import PointSet
 from evenroad.poses.constraint import Constraint
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.roadmap import Roadmap
 from evenroad.robots.robot import ConfigurationLike
 from evenroad.scenes.scene import Scene
 from evenroad.space.protocol import is_directed
@@ -33,6 +30,7 @@ from evenroad.world import World
 
 if TYPE_CHECKING:
     from evenroad.driving import GoalRegion, PolygonMap
+    from evenroad.roadmap.roadmap import Roadmap
     from evenroad.world import GridMap
 
 _PLAIN = Reading()
@@ -184,6 +182,10 @@ def _as_planner(planner: object) -> Planner | Roadmap:
         from evenroad.roadmap.npz import load_roadmap
 
         return load_roadmap(planner)
+    # Imported late: most plans need neither.
+    from evenroad.planning.planners.prm import PRM
+    from evenroad.roadmap.roadmap import Roadmap
+
     if isinstance(planner, PointSet):
         return PRM(planner)
     if not isinstance(planner, Planner | Roadmap):
@@ -195,6 +197,9 @@ def _as_planner(planner: object) -> Planner | Roadmap:
 
 def _within(planner: Planner | Roadmap, world: World) -> Planner:
     """Return the planner in a world: a roadmap within it."""
+    from evenroad.planning.world_roadmap import WorldRoadmap
+    from evenroad.roadmap.roadmap import Roadmap
+
     if is_directed(world.space) and not getattr(planner, "is_directed", False):
         raise InvalidValue(
             "only CarSearch plans for a car that drives only forwards, and only FlightSearch for what flies, got"

@@ -15,7 +15,6 @@ from evenroad._call import explains_calls
 from evenroad._hints import KnowsElsewhere
 from evenroad._rows import Rows
 from evenroad.collision.validate import MeshCheck
-from evenroad.driving.car_space import cusps_of
 from evenroad.errors import InvalidValue
 from evenroad.planning.result_html import as_html
 from evenroad.planning.searched import SearchedGraph as SearchedGraph
@@ -228,7 +227,11 @@ class PlanResult(Rows, metaclass=KnowsElsewhere):
     @property
     def cusps(self) -> int | None:
         """How often a car changes between forwards and backwards; None of what is no car's path."""
-        return None if self.pieces is None else cusps_of(self.pieces)
+        if self.pieces is None:
+            return None
+        from evenroad.driving.car_space import cusps_of
+
+        return cusps_of(self.pieces)
 
     @cached_property
     def length(self) -> float | None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 from dataclasses import dataclass, field, replace
-from decimal import Decimal
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -264,6 +263,9 @@ def as_unit_points(points: object) -> Floats:
         given = np.asarray(points)
         # NumPy would drop imaginary parts, parse text, and turn durations into integers.
         if given.dtype.kind == "O":
+            # Imported late: hardly any points are such.
+            from decimal import Decimal
+
             for each in given.flat:
                 if not isinstance(each, Real | Decimal) or isinstance(each, np.timedelta64):
                     raise TypeError(f"one is {shown(each)}")

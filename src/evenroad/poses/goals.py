@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter as now
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.geometry.pose import Pose
 from evenroad.poses.chain import chain_of, default_tip, frame_pose
-from evenroad.poses.inverse_kinematics import Checks, Reached, reach, reach_quickly, task_of
 from evenroad.poses.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robots.robot import ConfigurationLike, Robot
+
+if TYPE_CHECKING:
+    from evenroad.poses.inverse_kinematics import Checks, Reached
 
 MANY = 8
 """Number of goal poses from which on those that are hard to reach count only where no other is reached."""
@@ -87,7 +90,12 @@ def goals_of(
         tip = default_tip(world.robot)
     wanted = [as_pose_goal(target, tip, frame) for target in given]
     many = len(wanted) >= MANY
-    found = reach_quickly(world, wanted, start) if many else [reach(world, goal, start) for goal in wanted]
+    found: list[Reached] = []
+    if wanted:
+        # Imported late: a plan from posture to posture needs no inverse kinematics.
+        from evenroad.poses.inverse_kinematics import reach, reach_quickly
+
+        found = reach_quickly(world, wanted, start) if many else [reach(world, goal, start) for goal in wanted]
     with_postures = zip(wanted, found, strict=True)
     for target in targets:
         if not isinstance(target, _POSES):
@@ -127,6 +135,8 @@ def _record(world: Checks, goal: PoseGoal, reached: Reached, end: Floats | None)
         "why_not": reached.why,
     }
     if end is not None:
+        from evenroad.poses.inverse_kinematics import task_of
+
         chain, task = task_of(world.robot, goal)
         record["off_m"], record["off_rad"] = task.misses(chain.tip_poses(end[np.newaxis])[0])
     return record

@@ -16,9 +16,7 @@ from evenroad.geometry.shapes import PRIMITIVES, PointCloud
 from evenroad.loading.find import DATA
 from evenroad.robots.held import HeldObject
 from evenroad.scenes.entry import Entry
-from evenroad.scenes.moveit_scene import read_scene_text
 from evenroad.scenes.obstacles import EntryRows
-from evenroad.scenes.planning_scene import read_planning_scene
 from evenroad.scenes.robot_setup import Said
 from evenroad.scenes.scan import allowed_within
 from evenroad.scenes.scene import Obstacle, Scene
@@ -114,6 +112,9 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     if not path.is_file():
         raise BrokenFile(f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}")
     if path.suffix == ".scene":
+        # Imported late, as below: scenes of MoveIt are rarer.
+        from evenroad.scenes.moveit_scene import read_scene_text
+
         return read_scene_text(path)
     if path.suffix.lower() in OBJECT_FILES:
         bodies = objects_of(path, {})
@@ -124,6 +125,8 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
 
 def _of_document(document: Mapping[str, object], path: Path) -> Scene:
     if "obstacles" not in document and "world" in document:
+        from evenroad.scenes.planning_scene import read_planning_scene
+
         return read_planning_scene(document, path)
     return _scene(document, path)
 

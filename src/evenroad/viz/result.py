@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
 
 from evenroad._checks import as_file
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.constraints.constrained_world import KeptWorld
-from evenroad.driving.car_world import CarWorld
 from evenroad.errors import NotAvailable
 from evenroad.planning.result import PlanResult
 from evenroad.viz.arm import draw_arm_plan
-from evenroad.viz.car import draw_car_plan
-from evenroad.viz.plan import draw_plan
 from evenroad.viz.sheet import save_png
 from evenroad.world import World
-from evenroad.world.gridmap import DiskWorld
-from evenroad.world.gridmap.gridmap import GridMap
+
+if TYPE_CHECKING:
+    from evenroad.world.gridmap.gridmap import GridMap
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
 """Grey values of free, unknown and occupied cells."""
@@ -33,18 +31,28 @@ def plot_result(
 ) -> Image.Image:
     """Return what :meth:`PlanResult.plot` does."""
     world = result.world if world is None else world
-    if isinstance(world, KeptWorld):
-        world = world.world
-    if isinstance(world, DiskWorld):
-        picture = draw_plan(result, world)
-    elif isinstance(world, CarWorld):
-        picture = draw_car_plan(result, world)
-    elif isinstance(world, ArmWorld):
-        picture = draw_arm_plan(result, world)
-    else:
-        known = "its world is not known: plot(world=...)" if world is None else f"its world is a {type(world).__name__}"
-        raise NotAvailable(f"plans of disks and cars on maps and of arms can be drawn, but of this one {known}")
+    picture = draw_arm_plan(result, world) if isinstance(world, ArmWorld) else _draw_other(result, world)
     return _kept(picture, path)
+
+
+def _draw_other(result: PlanResult, world: World | None) -> Image.Image:
+    """Return the picture of a plan that is kept by constraints, or on a map."""
+    # Imported late: a picture of an arm needs none of it.
+    from evenroad.constraints.constrained_world import KeptWorld
+    from evenroad.driving.car_world import CarWorld
+    from evenroad.viz.car import draw_car_plan
+    from evenroad.viz.plan import draw_plan
+    from evenroad.world.gridmap import DiskWorld
+
+    match world:
+        case KeptWorld():
+            return plot_result(result, world=world.world)
+        case DiskWorld():
+            return draw_plan(result, world)
+        case CarWorld():
+            return draw_car_plan(result, world)
+    known = "its world is not known: plot(world=...)" if world is None else f"its world is a {type(world).__name__}"
+    raise NotAvailable(f"plans of disks and cars on maps and of arms can be drawn, but of this one {known}")
 
 
 def plot_parts(parts: Sequence[PlanResult], path: str | os.PathLike[str] | None = None) -> Image.Image:

@@ -51,11 +51,6 @@ class _Macro:
     parameters: Mapping[str, tuple[bool, str | None]]
 
 
-def is_xacro(root: Element) -> bool:
-    """Return whether an XML has elements of xacro."""
-    return any(element.tag.startswith(PREFIX) for element in root.iter())
-
-
 def expanded(
     path: Path, arguments: Mapping[str, str], find: Callable[[str], Path], packages: Mapping[str, str]
 ) -> Element:

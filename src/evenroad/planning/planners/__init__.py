@@ -9,11 +9,24 @@ from collections.abc import Callable
 
 from evenroad._hints import hint_of_module
 from evenroad.errors import UnknownName, shown
-from evenroad.planning.planners.prm import FMT, PRM
 from evenroad.planning.planners.trees import RRTConnect
 from evenroad.planning.problem import Planner
 
-PLANNERS: dict[str, Callable[[], Planner]] = {"rrtconnect": RRTConnect, "prm": PRM, "fmt": FMT}
+
+def _prm() -> Planner:
+    # Imported late, as below: an arm's plan needs no roadmap.
+    from evenroad.planning.planners.prm import PRM
+
+    return PRM()
+
+
+def _fmt() -> Planner:
+    from evenroad.planning.planners.prm import FMT
+
+    return FMT()
+
+
+PLANNERS: dict[str, Callable[[], Planner]] = {"rrtconnect": RRTConnect, "prm": _prm, "fmt": _fmt}
 """Planners by name."""
 _OTHERWISE = {"rrtc": "rrtconnect", "birrt": "rrtconnect", "connect": "rrtconnect", "fmt*": "fmt", "fmtstar": "fmt"}
 """Other names of planners -> theirs, both in small letters alone."""
