@@ -10,18 +10,19 @@ FLAGS += ["--disable-background-networking", "--no-first-run"]
 
 
 @contextmanager
-def opened(address, width, height):
-    """Give a tab with a page; `requests` are the addresses that it loads, `wrong` the errors of its scripts."""
+def opened(address, width, height, colours="light"):
+    """Give a tab with a page; `requests` are the addresses that it loads, `wrong` what its scripts complain of."""
     playwright = pytest.importorskip("playwright.sync_api")
     with playwright.sync_playwright() as browsers:
         try:
             browser = browsers.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         except playwright.Error as error:
             pytest.skip(f"no Chromium: {error}")
-        tab = browser.new_page(viewport={"width": width, "height": height})
+        tab = browser.new_page(viewport={"width": width, "height": height}, color_scheme=colours)
         tab.requests, tab.wrong = [], []
         tab.on("request", lambda request: tab.requests.append(request.url))
         tab.on("pageerror", lambda error: tab.wrong.append(str(error)))
+        tab.on("console", lambda message: tab.wrong.append(message.text))
         tab.goto(address)
         yield tab
         browser.close()

@@ -20,14 +20,29 @@ def page():
 @pytest.fixture
 def tab(page):
     with opened(page.address, 1100, 700) as tab:
+        tab.evaluate("play(false); go(0)")
         yield tab
     assert tab.wrong == []
     # Nothing from outside of this computer: it works without a network.
     assert all(url.startswith(("http://127.0.0.1", "data:")) for url in tab.requests)
 
 
-ARROW, TOP = (457, 272), (630, 342)
-"""Pixels on the arrow of the start's handle that leads down, and on the top of the box that is reached into."""
+def arrow(tab):
+    """Return a pixel on the steepest arrow of the start's handle."""
+    arrows = [each["pixels"] for each in tab.evaluate("handles.handlePixels()") if each["name"] == "start"]
+    steepest = max(arrows, key=lambda pixels: abs(pixels[-1][1] - pixels[0][1]))
+    return steepest[4]
+
+
+def pixel_of(tab, name):
+    """Return a pixel near the middle of a body where no handle is."""
+    return tab.evaluate(f"""(() => {{ const body = shownArm.bodies.find((each) => each.name === "{name}");
+        for (const off of [[0, 0, 0], [0.08, 0.08, 0], [-0.08, 0.08, 0], [0.08, -0.08, 0], [-0.08, -0.08, 0]]) {{
+            const [x, y] = seenBy(camera.view().matrix, moved(body.pose || posesAt(valueOf)[body.link], off));
+            const pixel = [innerWidth * (0.5 + 0.5 * x), innerHeight * (0.5 - 0.5 * y)];
+            if (!handles.pressed(...pixel)) return pixel;
+            handles.pressed(null);
+        }} }})()""")
 
 
 def drag(tab, pixel, by):
@@ -46,7 +61,7 @@ def tip_of(page, q):
 def test_a_start_that_is_dragged_moves_and_is_planned_from(page, tab):
     before = tip_of(page, page.result.start)
     picture = tab.screenshot()
-    drag(tab, ARROW, (0, 40))
+    drag(tab, arrow(tab), (0, 60))
     after = tip_of(page, page.result.start)
     assert page.result.solved
     assert after[2, 3] < before[2, 3] - 0.03
@@ -56,14 +71,15 @@ def test_a_start_that_is_dragged_moves_and_is_planned_from(page, tab):
 
 
 def test_an_obstacle_is_chosen_by_a_click_and_only_if_nothing_is_before_it(page, tab):
-    tab.mouse.click(*TOP)
+    top = pixel_of(tab, "box top")
+    tab.mouse.click(*top)
     assert tab.inner_text("#chosen").strip() == "box top"
     tab.click("#remove")
     tab.wait_for_function("!isBusy && state.chosen === null")
     assert "box top" not in page.world.scene.names
-    tab.mouse.click(*TOP)
+    tab.mouse.click(*top)
     assert tab.inner_text("#chosen").strip() in ("box right", "box back", "box floor")
-    tab.mouse.click(480, 320)
+    tab.mouse.click(*pixel_of(tab, "upper_arm_link"))
     assert "click an obstacle" in tab.inner_text("#chosen")
 
 

@@ -1,7 +1,11 @@
 """The page that plays offline, in a browser: its kinematics are ours, it plays, and it shows what its boxes say."""
 
+import os
+from io import BytesIO
+
 import numpy as np
 import pytest
+from PIL import Image
 
 import evenroad as er
 from evenroad.robots.kinematics import link_poses
@@ -20,8 +24,16 @@ def result():
 def tab(result, tmp_path):
     save_page(tmp_path / "page.html", result)
     with opened((tmp_path / "page.html").as_uri(), 1100, 700) as tab:
+        tab.evaluate("play(false); go(0)")
         yield tab
     assert tab.wrong == []
+
+
+def colours(picture):
+    """Return the different colours of the middle of a screenshot, where no pane is."""
+    shown = np.asarray(Image.open(BytesIO(picture)).convert("RGB"))
+    rows, columns, _ = shown.shape
+    return np.unique(shown[rows // 4 : -rows // 4, : columns // 2].reshape(-1, 3) // 8, axis=0)
 
 
 def test_its_kinematics_are_ours(tab, result):
@@ -30,6 +42,50 @@ def test_its_kinematics_are_ours(tab, result):
         values = tab.evaluate(f"data.joints.filter((each) => each.planned).map((each) => each.values[{state}])")
         ours = link_poses(result.world.robot, [values])[0]
         np.testing.assert_allclose(np.reshape(poses, (-1, 4, 4)).transpose(0, 2, 1), ours, atol=1e-6)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [(1280, 800), (390, 780)])
+def test_the_first_picture_comes_soon_in_every_window_and_scheme_and_plays(result, size, scheme, tmp_path):
+    save_page(tmp_path / "page.html", result)
+    with opened((tmp_path / "page.html").as_uri(), *size, scheme) as tab:
+        # Other processes make it wait: a browser without a graphics card draws on the processors.
+        busy = max(1.0, os.getloadavg()[0] / os.cpu_count())
+        assert tab.evaluate("state.drawn") < 1500 * busy
+        tab.wait_for_function("state.time > 0.1")
+        assert tab.inner_text("#play") == "Pause"
+        tab.click("#play")
+        shown = colours(tab.screenshot())
+        assert len(shown) > 40
+        assert (shown.mean() < 16) == (scheme == "dark")
+        assert tab.evaluate("document.documentElement.scrollWidth") <= size[0]
+        bar, said, side = (tab.locator(f"#{name}").bounding_box() for name in ("bar", "said", "side"))
+        assert bar["x"] + bar["width"] <= size[0]
+        assert said["x"] + said["width"] <= side["x"]
+        assert tab.wrong == []
+
+
+def test_the_scene_fills_the_free_area_again_after_fit_and_the_camera_stays_above_the_floor(tab):
+    def spread():
+        low, high = tab.evaluate("""(() => { const matrix = camera.view().matrix, box = shownArm.points();
+            const seen = box.map((p) => seenBy(matrix, p));
+            return [0, 1].map((k) => seen.map((p) => p[k])).map((c) => [Math.min(...c), Math.max(...c)]); })()""")
+        return max(low[1] - low[0], high[1] - high[0])
+
+    first = spread()
+    assert 1.2 < first <= 2.0
+    tab.mouse.move(500, 300)
+    tab.mouse.down()
+    tab.mouse.move(700, 40, steps=3)
+    tab.mouse.up()
+    height = "camera.view().from[2] - shownArm.ground"
+    assert tab.evaluate(height) > 0.01
+    tab.mouse.wheel(0, 600)
+    tab.wait_for_function("camera.eye.own")
+    assert tab.evaluate(height) > 0.01
+    assert spread() < 0.8 * first
+    tab.click("#fit")
+    assert spread() == pytest.approx(first, rel=1e-3)
 
 
 def test_it_plays_stops_and_follows_a_joint_s_slider(tab):
@@ -49,8 +105,11 @@ def test_bodies_and_colours_are_shown_as_the_boxes_say(tab):
     tab.check("#show-colour-by-clearance")
     coloured = tab.screenshot()
     assert coloured != before
-    tab.uncheck("#show-collision")
-    assert tab.screenshot() != coloured
+    tab.check("#show-collision-bodies")
+    over = tab.screenshot()
+    assert over != coloured
+    tab.uncheck("#show-visual")
+    assert tab.screenshot() not in (over, coloured)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +123,6 @@ def test_a_robot_on_a_map_drives_in_the_browser(moves, size, tmp_path):
     with opened((tmp_path / "page.html").as_uri(), *size) as tab:
         tab.wait_for_function("document.getElementById('now').value.includes('clear')")
         before = tab.screenshot()
-        tab.click("#play")
         tab.wait_for_function("state.time > 0.5")
         tab.click("#play")
         assert tab.screenshot() != before

@@ -36,7 +36,9 @@ Data: TypeAlias = "dict[str, object]"
 """Data of a page, as JSON."""
 Timed: TypeAlias = tuple[Floats, Floats]
 """Times from 0 on, (n,) [s], and the configurations at them, (n, dim)."""
-TEMPLATE = Path(__file__).parent / "player.html"
+WEB = Path(__file__).parent / "web"
+SCRIPTS = ("time", "options", "live", "matrices", "painter", "camera", "arm", "handles", "map", "start")
+"""Parts of the page's script, in their order: each may use the names of those before it."""
 SAMPLES = 240
 """Number of states of a path that has no times."""
 SECONDS = 4.0
@@ -102,7 +104,9 @@ def filled(data: Data) -> str:
     """Return the text of a page that shows some data."""
     # No text of a plan ends the script that holds it.
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    return TEMPLATE.read_text(encoding="utf-8").replace("__DATA__", text)
+    script = "\n".join((WEB / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS)
+    page, style = ((WEB / name).read_text(encoding="utf-8") for name in ("page.html", "page.css"))
+    return page.replace("__STYLE__", style).replace("__SCRIPT__", script).replace("__DATA__", text)
 
 
 def states_of(result: PlanResult, world: ArmWorld | DiskWorld | CarWorld, timed: Timed | None) -> Timed:
