@@ -52,6 +52,8 @@ def scene_seen_by(robot: Robot, scene: Scene) -> Scene:
     configuration.
     """
     scene = placed_scene(robot, scene)
+    if not any(each.seen is not None or each.cuts for _, each in scene.surfaces):
+        return scene
     obstacles: list[Obstacle] = []
     for obstacle in scene.obstacles:
         body: Shape | None = obstacle.body

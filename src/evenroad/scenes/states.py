@@ -36,11 +36,14 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
     Raises InvalidValue if two states have such a joint in different places, or one has it outside its limits;
     UnknownName if a state has a joint that the robot does not have.
     """
+    names = [text.strip() for text in texts]
+    if not names:
+        return robot
     states = named_states(robot, scene)
     joints = {joint.name: joint for joint in robot.joints}
     held: dict[str, float] = {}
     said: dict[str, str] = {}
-    for name in (text.strip() for text in texts):
+    for name in names:
         for joint, value in _outside_group(robot, name, states.get(name, {})).items():
             _require_within(joints[joint], value, f"the state {name!r}", scene)
             if abs(held.setdefault(joint, value) - value) > SLACK:
