@@ -8,7 +8,7 @@ import time
 import pytest
 
 from evenroad import _files, qmc
-from evenroad._shared import OwnLock, once, once_property, one_at_a_time
+from evenroad._shared import OwnLock, once, once_property, one_at_a_time, recent
 from tests.threads import THREADS, together
 
 
@@ -82,3 +82,20 @@ def test_an_engine_hands_out_each_point_once(made):
     assert shared.reset().random(5).tolist() == alone[:5].tolist()
     assert pickle.loads(pickle.dumps(shared)).random(5).tolist() == alone[5:10].tolist()
     assert shared.fast_forward(3).num_generated == 8
+
+
+def test_recent_values_are_those_of_the_same_objects_and_few():
+    made = []
+
+    @recent(most=2)
+    def doubled(values, times):
+        made.append(values)
+        return values * times
+
+    one, other = [1], [1]
+    assert doubled(one, 2) is doubled(one, 2)
+    assert doubled(other, 2) == [1, 1]
+    assert [each is one for each in made] == [True, False]
+    doubled(one, 3)
+    doubled(one, 2)
+    assert len(made) == 4

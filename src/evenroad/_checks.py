@@ -45,6 +45,8 @@ def require_count(name: str, value: object, at_least: int = 1) -> int:
 
 def require_positive(name: str, value: object, *, or_zero: bool = False, at_most: float = math.inf) -> float:
     """Return `value` as a finite float > 0 (or >= 0) and <= `at_most`, or raise InvalidValue naming it."""
+    if type(value) is float and 0.0 < value <= at_most and value < math.inf:
+        return value
     allowed = "a finite number >= 0" if or_zero else "a finite number > 0"
     if isinstance(value, bool) or not isinstance(value, _REAL):
         raise InvalidValue(f"{name} must be {allowed}, got {shown(value)}")
@@ -69,11 +71,15 @@ def as_row(
     name: str, values: Sequence[float], length: int | None = None, *, within: float = math.inf
 ) -> tuple[float, ...]:
     """Return `values` as a tuple of finite floats from -`within` to `within`, `length` of them or else at least one."""
-    wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
     try:
         row = tuple(map(float, values))
     except (TypeError, ValueError):
         row = ()
+    # The sum of finite numbers is finite, unless they are very large.
+    usual = row and len(row) == (length or len(row)) and math.isfinite(sum(row))
+    if usual and (within == math.inf or (min(row) >= -within and max(row) <= within)):
+        return row
+    wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
     if len(row) == 0 or (length is not None and len(row) != length) or not all(map(math.isfinite, row)):
         raise InvalidValue(f"{name} must be {wanted}, got {shown(values)}")
     if max(map(abs, row)) > within:

@@ -31,28 +31,29 @@ def once(function: Callable[..., Made]) -> Callable[..., Made]:
     return cached
 
 
-MOST_RECENT = 256
-"""Largest number of values that a function of recent arguments keeps."""
+def recent(most: int = 256) -> Callable[[Callable[Given, Made]], Callable[Given, Made]]:
+    """Return a decorator of functions that caches values by the identity of arguments that cannot be keys.
 
-
-def recent(function: Callable[Given, Made]) -> Callable[Given, Made]:
-    """Return a function that caches its values by the identity of arguments that cannot be keys, such as robots.
-
-    These must not change; they are kept, so that no other object takes their place in memory.
+    Robots and scenes are such arguments; they must not change.  They are kept, so that no other object takes their
+    place in memory.  At most `most` values are kept.
     """
-    kept: dict[tuple[object, ...], tuple[tuple[object, ...], Made]] = {}
 
-    @wraps(function)
-    def cached(*arguments: Given.args, **named: Given.kwargs) -> Made:
-        key = tuple(each if isinstance(each, _PLAIN) else id(each) for each in arguments)
-        found = kept.get(key)
-        if found is None:
-            if len(kept) >= MOST_RECENT:
-                kept.clear()
-            found = kept[key] = arguments, function(*arguments, **named)
-        return found[1]
+    def decorated(function: Callable[Given, Made]) -> Callable[Given, Made]:
+        kept: dict[tuple[object, ...], tuple[tuple[object, ...], Made]] = {}
 
-    return cached
+        @wraps(function)
+        def cached(*arguments: Given.args, **named: Given.kwargs) -> Made:
+            key = tuple([each if isinstance(each, _PLAIN) else id(each) for each in arguments])
+            found = kept.get(key)
+            if found is None:
+                if len(kept) >= most:
+                    kept.clear()
+                found = kept[key] = arguments, function(*arguments, **named)
+            return found[1]
+
+        return cached
+
+    return decorated
 
 
 _PLAIN = (int, float, str, tuple)

@@ -7,7 +7,11 @@ import pytest
 import trimesh
 
 import evenroad as er
+from evenroad._native.robot import are_usual
+from evenroad.collision import scene_notes
+from evenroad.geometry.rotation import NO_ROTATION
 from evenroad.geometry.shapes import Mesh, PointCloud
+from evenroad.loading.units import UNLIKE
 from evenroad.robot import ArmWorld, Obstacle, load_model, load_robot, load_scene
 from evenroad.robots.planes import Plane
 from tests.robots.urdf_texts import two_joints
@@ -58,6 +62,26 @@ def test_shipped_scenes_are_of_usual_sizes():
     for name in ("box-reach", "box-reach-narrow", "empty", "shelf"):
         scene = load_scene(name)
         assert ArmWorld("arm7" if name == "shelf" else "ur5", scene).notes == ()
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_sizes_are_usual_natively_where_nothing_is_noted(seed):
+    """Obstacles of all kinds and sizes, near and far, and planes."""
+    rng = np.random.default_rng(seed)
+    bodies = []
+    for _ in range(int(rng.integers(1, 4))):
+        size, xyz = 10.0 ** rng.uniform(-5, 5, 3), rng.choice([0.3, 30.0, 3000.0]) * rng.uniform(-1, 1, 3)
+        kinds = [er.Box(size, xyz=xyz, rpy=rng.uniform(-3, 3, 3)), er.Sphere(size[0], xyz=xyz)]
+        kinds += [
+            er.Cylinder(*size[:2], xyz=xyz),
+            er.Capsule(*size[:2], xyz=xyz),
+            Plane("p", tuple(xyz.tolist()), NO_ROTATION).body,
+        ]
+        bodies.append(kinds[int(rng.integers(5))])
+    scene, reach = er.Scene(bodies), float(rng.uniform(0.2, 3.0))
+    limits = UNLIKE * reach, scene_notes._THICK * reach, min(reach, 1.0) / UNLIKE
+    usual = are_usual(scene.rows, scene_notes._PLANE, reach, *limits)
+    assert usual == (scene_notes._size_notes(scene, reach) == ())
 
 
 def test_a_plan_hands_on_the_note_about_its_scene(robot, tmp_path):

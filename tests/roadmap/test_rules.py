@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import draw
 from evenroad.roadmap import Complete, KNearest, Radius, default_rule, rule_named
+from evenroad.roadmap.rules import ascending
 from evenroad.space import BoxSpace, Rectangle
 from tests.planning.clouds import clouds, nearest_by_sorting
 from tests.refused import refused
@@ -25,6 +26,14 @@ def test_symmetrised_edges_join_i_and_j_when_either_is_near_the_other(points, k)
     near = nearest_by_sorting(points, k)
     expected = {(min(i, j), max(i, j)) for i, row in enumerate(near.tolist()) for j in row}
     assert _as_set(KNearest(k).edges(points)) == expected
+
+
+@pytest.mark.parametrize(("count", "pairs"), [(1, 3), (5, 200), (1000, 4000), (1000, 0)])
+def test_pairs_are_sorted_and_each_once_as_numpy_sorts_them(count, pairs):
+    given = np.random.default_rng(count).integers(0, count, (pairs, 2)).astype(np.int32)
+    ours = ascending(given, count)
+    assert ours.dtype == np.int32
+    assert ours.tolist() == np.unique(np.sort(given, axis=1), axis=0).tolist()
 
 
 def test_rules_say_their_name_and_a_name_leads_back_to_its_rule():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._native import robot as native
 from evenroad.collision.native_surfaces import surface_of
 from evenroad.geometry.mesh_shape import gap_notes
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Sphere
@@ -15,6 +16,7 @@ from evenroad.scenes.scene import Scene
 
 _THICK = 10.0
 """How many times the robot's reach a huge obstacle is thick: a thin one may be a floor."""
+_PLANE = np.array([SIDE, SIDE, DEPTH])
 _SPHERE, _CAPSULE = (list(PRIMITIVES).index(kind) for kind in (Sphere.kind, Capsule.kind))
 
 
@@ -24,6 +26,9 @@ def scene_notes(scene: Scene, reach: float) -> tuple[str, ...]:
     Obstacles of arrays and changed ones have none: they may be others for each plan, which would take a tenth longer.
     """
     if type(scene.table) in (Rows, Changed) or not scene.obstacles:
+        return ()
+    limits = UNLIKE * reach, _THICK * reach, min(reach, 1.0) / UNLIKE
+    if not scene.surfaces and native.are_usual(scene.rows, _PLANE, reach, *limits):
         return ()
     return _size_notes(scene, reach) + gap_notes("obstacle", ((each.name, each.body) for _, each in scene.surfaces))
 

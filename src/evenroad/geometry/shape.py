@@ -33,6 +33,9 @@ class Placed(TypedDict, total=False):
     """Its name in a scene; default: its kind with a number, as ``box 0``."""
 
 
+_KEYWORDS = frozenset(Placed.__annotations__)
+
+
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class Shape:
     """Base of all shapes: a pose in the frame of the link `link`, or of the world (`WORLD`), and a name.
@@ -73,7 +76,10 @@ class Shape:
 
     def _set_pose(self, placed: Placed) -> None:
         """Set pose, link and name; UnknownName for another keyword, InvalidValue for two poses."""
-        if strange := sorted(set(placed) - Placed.__annotations__.keys()):
+        if not placed:
+            set_fields(self, pose=IDENTITY, link=WORLD, name="")
+            return
+        if strange := sorted(placed.keys() - _KEYWORDS):
             # All are listed, because a hint by spelling misleads: `pos` is nearly `pose`, but means `xyz`.
             known = ", ".join(sorted(Placed.__annotations__))
             raise UnknownName(f"unknown keyword of a {self.kind}: {shown(strange[0])}; known: {known}")
@@ -92,5 +98,6 @@ class Shape:
     def _lengths(self, **dimensions: object) -> None:
         """Set dimensions as floats; InvalidValue unless they are finite and > 0 [m]."""
         for name, value in dimensions.items():
-            what = f"the {name} of a {self.kind}"
-            set_fields(self, **{name: require_positive(what, value, at_most=FARTHEST)})
+            if type(value) is not float or not 0.0 < value <= FARTHEST:
+                value = require_positive(f"the {name} of a {self.kind}", value, at_most=FARTHEST)
+            object.__setattr__(self, name, value)

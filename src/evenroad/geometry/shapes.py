@@ -56,9 +56,10 @@ class Box(Shape):
     size: Vector
 
     def __init__(self, size: Sequence[float], **placed: Unpack[Placed]) -> None:
-        set_fields(self, size=as_row("the size of a box", size, 3))
-        for extent in self.size:
+        extents = as_row("the size of a box", size, 3)
+        for extent in extents:
             require_positive("the size of a box", extent, at_most=FARTHEST)
+        set_fields(self, size=extents)
         self._set_pose(placed)
 
     @property

@@ -131,7 +131,7 @@ def piece_of(bodies: Bodies, configuration: Floats, reach: tuple[float, ...], mo
     return Piece(cells, reached)
 
 
-@recent
+@recent()
 def first_links(robot: Robot, joints: int) -> Robot:
     """Return the robot with the bodies that its first joints move: other joints are held, later bodies are removed.
 
@@ -170,7 +170,7 @@ def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
     return _thinner(robot, tuple((_speeds(robot) @ half).tolist()), slack)
 
 
-@recent
+@recent()
 def _thinner(robot: Robot, moved: tuple[float, ...], slack: float) -> Robot:
     """Return the robot with bodies thinner by the movement of each capsule, and by a slack [m]."""
     kept = []
@@ -182,21 +182,21 @@ def _thinner(robot: Robot, moved: tuple[float, ...], slack: float) -> Robot:
     return replace(robot, capsules=tuple(kept))
 
 
-@recent
+@recent()
 def _thicker(robot: Robot, moved: tuple[float, ...]) -> Robot:
     """Return the robot with bodies thicker by the movement of each capsule [m]."""
     thick = [replace(capsule, radius=capsule.radius + far) for capsule, far in zip(robot.capsules, moved, strict=True)]
     return replace(robot, capsules=tuple(thick))
 
 
-@recent
+@recent()
 def _speeds(robot: Robot) -> Floats:
     """Return the largest speeds at which joints move the segments of capsules, (capsules, dim) [m/rad or m/m]."""
     tree = moving_tree(robot)
     return speed_bounds(tree, [place_capsule(capsule, tree) for capsule in robot.capsules], [], robot)[0]
 
 
-@recent
+@recent()
 def _moving_links(first: Robot, true: Robot) -> list[tuple[Robot, Floats]]:
     """Return, for each moving link with true shapes, a robot of it alone, and the speeds at which joints move it."""
     links, tree = [], moving_tree(first)

@@ -128,12 +128,12 @@ def _held(robot: Robot) -> tuple[tuple[str, float], ...]:
     return tuple(sorted(robot.held.items()))
 
 
-@recent
+@recent()
 def _inner_robot(robot: Robot, held: tuple[tuple[str, float], ...]) -> Robot:
     return replace(robot, held=dict(held), capsules=robot.inner or (), inner=None, shapes=())
 
 
-@recent
+@recent()
 def _outer_robot(robot: Robot, held: tuple[tuple[str, float], ...]) -> Robot:
     sharp = {hull.link for hull in robot.hulls if not hull.is_round}
     pairs = tuple(pair for pair in robot.pairs if sharp.isdisjoint(pair))

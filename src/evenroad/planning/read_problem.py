@@ -11,6 +11,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._hints import keyword_hint
+from evenroad._shared import recent
 from evenroad._time_limit import off_the_clock
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.driving.goal_region import GoalRegion
@@ -188,14 +189,28 @@ def arm_problem(
         _refuse_what_is_none(robot, scene, goals, reading)
         robot = standing_at(robot, first)
         # If no posture reaches a goal pose, contacts near the endpoints stay allowed.
-        world = ArmWorld(robot, open_everywhere(scene), resolution=resolution, clearance=clearance)
-        _ = world.checker
+        around = open_everywhere(scene)
+        # Dictionaries may change, so what they decide is no key.
+        make = _new_world if around.limits or around.padding else _recent_world
+        world = make(robot, around, resolution, clearance, tuple(sorted(robot.held.items())))
     given = _goals_in(world, first, goals, reading)
     if scene.near_ends and not given.unreached:
         start_and_goals = np.concatenate([first[np.newaxis], given.configurations])
         world = replace(world, scene=allowed_near_ends(robot, scene, start_and_goals))
         given = replace(given, whole=not given.poses)
     return Problem(world, first, given.configurations, given=given, model=model, **wanted)
+
+
+def _new_world(
+    robot: Robot, scene: Scene, resolution: float, clearance: float, held: tuple[tuple[str, float], ...]
+) -> ArmWorld:
+    """Return the world of a robot in a scene, with its checks; `held` are the values of joints outside the group."""
+    world = ArmWorld(robot, scene, resolution=resolution, clearance=clearance)
+    _ = world.checker
+    return world
+
+
+_recent_world = recent(most=4)(_new_world)
 
 
 def problem_in(
@@ -241,6 +256,8 @@ def _refuse_what_is_none(robot: Robot, scene: Scene, goals: list[Goal], reading:
 
 def goal_list(goal: Goal | Sequence[Goal], dim: int) -> list[Goal]:
     """Return a list of the goals; a (4, 4) array is the matrix of a pose, unless the arm has four joints."""
+    if type(goal) is list and all(type(each) is float for each in goal):
+        return [goal]
     if isinstance(goal, np.ndarray):
         if goal.shape == (4, 4) and dim != 4:
             return [Pose.from_matrix(goal)]

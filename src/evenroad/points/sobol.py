@@ -31,13 +31,14 @@ def scrambled_sobol(n: int, d: int, random: np.random.Generator) -> Floats:
     scramble[:, np.arange(BITS), np.arange(BITS)] = 1
     digits = direction_numbers(d)[:, np.newaxis] >> np.arange(BITS - 1, -1, -1, dtype=np.uint32)[:, np.newaxis] & 1
     numbers = np.einsum("apb,p->ab", scramble @ digits & 1, ones[::-1])
-    words = np.empty((1 << (n - 1).bit_length(), d), dtype=np.uint32)
+    words = np.empty((n, d), dtype=np.uint32)
     words[0] = shift
     # A Gray code counts its second half backwards.
     for bit in range((n - 1).bit_length()):
         size = 1 << bit
-        words[size : 2 * size] = words[size - 1 :: -1] ^ numbers[:, bit] if size > 1 else words[:1] ^ numbers[:, bit]
-    points: Floats = words[:n] * np.float64(2.0**-BITS)
+        more = min(size, n - size)
+        np.bitwise_xor(words[:size][::-1][:more], numbers[:, bit], out=words[size : size + more])
+    points: Floats = words * np.float64(2.0**-BITS)
     return points
 
 

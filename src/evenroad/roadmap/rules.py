@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_positive
-from evenroad._time_limit import look_at_clock
+from evenroad._native.roadmap import ascending_pairs
 from evenroad.errors import UnknownName
 from evenroad.roadmap.neighbours import nearest, within
 from evenroad.space import Space
@@ -50,9 +50,7 @@ def ascending(pairs: npt.NDArray[np.integer], n: int) -> Ints32:
     """Return the distinct unordered pairs of numbers below `n`, smaller first, sorted, as int32 (m, 2)."""
     if not len(pairs):
         return np.empty((0, 2), dtype=np.int32)
-    look_at_clock()
-    keys = np.unique(pairs.min(axis=1).astype(np.int64) * n + pairs.max(axis=1))
-    return np.stack([keys // n, keys % n], axis=1).astype(np.int32)
+    return ascending_pairs(np.ascontiguousarray(pairs, dtype=np.int32), n)
 
 
 def plain(number: float) -> str:

@@ -159,11 +159,21 @@ class Obstacle:
         return self.body.pose.rotation
 
 
+_BODIES = (Shape, Obstacle)
 Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
 
 
 def as_obstacles(bodies: object, taken: Callable[[str], bool], scene: str) -> tuple[Obstacle, ...]:
     """Return shapes and obstacles as obstacles; a shape without a name gets one that is new and not `taken`."""
+    listed = as_bodies(bodies, scene)
+    names = names_of(listed, taken)
+    return tuple(
+        [each if isinstance(each, Obstacle) else Obstacle(name, each) for name, each in zip(names, listed, strict=True)]
+    )
+
+
+def as_bodies(bodies: object, scene: str) -> tuple[Obstacle | Shape, ...]:
+    """Return shapes and obstacles as a tuple; InvalidValue if one is neither."""
     if isinstance(bodies, Shape | Obstacle):
         bodies = [bodies]
     if isinstance(bodies, str) or not isinstance(bodies, Iterable):
@@ -171,23 +181,25 @@ def as_obstacles(bodies: object, taken: Callable[[str], bool], scene: str) -> tu
         raise InvalidValue(f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}; {hint}")
     listed = tuple(bodies)
     for each in listed:
-        if not isinstance(each, Shape | Obstacle):
+        if not isinstance(each, _BODIES):
             raise InvalidValue(
                 f"obstacles of scene {scene!r} must be shapes, as er.Box((x, y, z), xyz=...), got {shown(each)}"
             )
-    if all(isinstance(each, Obstacle) for each in listed):
-        return listed
-    own = {each.name for each in listed}
-    obstacles = []
-    for each in listed:
-        if isinstance(each, Shape):
-            name = each.name or next(
-                text for k in count() if (text := f"{each.kind} {k}") not in own and not taken(text)
-            )
-            own.add(name)
-            each = Obstacle(name, each)
-        obstacles.append(each)
-    return tuple(obstacles)
+    return listed
+
+
+def names_of(bodies: Sequence[Obstacle | Shape], taken: Callable[[str], bool] = lambda name: False) -> tuple[str, ...]:
+    """Return the names of bodies; a shape without a name gets one that is new and not `taken`."""
+    names = [each.name for each in bodies]
+    if all(names):
+        return tuple(names)
+    own = set(names)
+    for i, each in enumerate(bodies):
+        if not names[i] and isinstance(each, Shape):
+            free = (text for k in count() if (text := f"{each.kind} {k}") not in own and not taken(text))
+            names[i] = next(free)
+            own.add(names[i])
+    return tuple(names)
 
 
 def box_rows(size: npt.ArrayLike, xyz: npt.ArrayLike, xyzw: npt.ArrayLike | None) -> Floats:

@@ -7,13 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TypeVar, overload
+from typing import TypeVar, cast, overload
 
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._native import robot as native
 from evenroad.geometry.pose import Pose
-from evenroad.scenes.obstacle import Obstacle, obstacles_of_rows
+from evenroad.geometry.shapes import PRIMITIVES, Shape
+from evenroad.scenes.obstacle import Obstacle, as_bodies, as_obstacles, names_of, obstacles_of_rows
 
 MOST = 128
 """Number of changes from which on a sequence no longer refers to the one that it was changed from."""
@@ -126,6 +128,19 @@ class Rows(Obstacles):
         return ()
 
 
+class ShapeRows(Rows):
+    """Boxes, spheres, cylinders and capsules by their names, whose rows are read from shapes."""
+
+    def __init__(self, rows: Floats, names: tuple[str, ...], shapes: Sequence[Shape]) -> None:
+        super().__init__(rows, names)
+        self._shapes = shapes
+
+    @cached_property
+    def objects(self) -> tuple[Obstacle, ...]:
+        """The obstacles themselves, made when somebody looks."""
+        return tuple([Obstacle(name, shape) for name, shape in zip(self.names, self._shapes, strict=True)])
+
+
 class EntryRows(Rows):
     """Obstacles that a file or a mapping describes one by one."""
 
@@ -232,6 +247,18 @@ class Changed(Obstacles):
             return list(of_base)
         gone = {self._base.numbers[name] for name in self._gone}
         return [each for number, each in enumerate(of_base) if number not in gone]
+
+
+def obstacles_of(bodies: object, scene: str) -> Obstacles:
+    """Return the obstacles that shapes and obstacles are; InvalidValue, which names the scene, if one is neither."""
+    listed = as_bodies(bodies, scene)
+    if listed and (rows := native.shape_rows(listed, _SHAPES)) is not None:
+        # Only shapes have rows here: obstacles have their own.
+        return ShapeRows(rows, names_of(listed), cast("tuple[Shape, ...]", listed))
+    return Obstacles(as_obstacles(listed, lambda name: False, scene))
+
+
+_SHAPES = tuple(PRIMITIVES.values())
 
 
 def rows_of(obstacles: Iterable[Obstacle]) -> Floats:

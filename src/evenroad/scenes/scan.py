@@ -125,8 +125,9 @@ def allowed_near_ends(robot: Robot, scene: Scene, endpoints: npt.ArrayLike) -> S
 
 def open_everywhere(scene: Scene) -> Scene:
     """Return a scene in which contacts near start and goals are allowed everywhere; itself where there are none."""
-    allowed = scene.allowed.union(each[:2] for each in scene.near_ends)
-    return replace(scene, allowed=allowed, near_ends=frozenset()) if scene.near_ends else scene
+    if not scene.near_ends:
+        return scene
+    return replace(scene, allowed=scene.allowed.union(each[:2] for each in scene.near_ends), near_ends=frozenset())
 
 
 def allowed_everywhere(robot: Robot, scene: Scene) -> list[tuple[str, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Unpack
 
@@ -25,7 +25,7 @@ from evenroad.scenes.obstacle import Bodies, as_obstacles, box_rows, smaller_row
 from evenroad.scenes.obstacle import Cut as Cut
 from evenroad.scenes.obstacle import Obstacle as Obstacle
 from evenroad.scenes.obstacle import Seen as Seen
-from evenroad.scenes.obstacles import Obstacles, Rows, named_twice
+from evenroad.scenes.obstacles import Obstacles, Rows, named_twice, obstacles_of
 from evenroad.scenes.robot_setup import NO_SETUP, RobotSetup, Said
 
 
@@ -88,7 +88,8 @@ class Scene(Changes, metaclass=KnowsElsewhere):
     ) -> None:
         require_options("Scene", said, Said, ("obstacles", "name", "allowed", "near_ends", "setup"))
         given: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
-        setup = replace(setup or RobotSetup(), **given)
+        setup = setup or RobotSetup()
+        setup = replace(setup, **given) if given else setup
         if isinstance(obstacles, Mapping):
             values = {"allowed": allowed, "near_ends": near_ends, **vars(setup)}
             if more := sorted(key for key in values if values[key]):
@@ -97,11 +98,10 @@ class Scene(Changes, metaclass=KnowsElsewhere):
                 )
             from evenroad.scenes.scene_file import scene_of
 
-            scene = scene_of(obstacles, _named(name))
-            set_fields(self, **{each.name: getattr(scene, each.name) for each in fields(scene)})
+            vars(self).update(vars(scene_of(obstacles, _named(name))))
             return
         known = obstacles if isinstance(obstacles, Obstacles) else None
-        all_of_them = Obstacles(as_obstacles(obstacles, lambda name: False, name)) if known is None else known
+        all_of_them = obstacles_of(obstacles, name) if known is None else known
         set_fields(self, name=_named(name), obstacles=all_of_them, allowed=allowed, near_ends=near_ends, setup=setup)
         if setup.attached:
             self._require_attached()

@@ -25,6 +25,7 @@ from evenroad.scenes.scene_objects import OBJECT_FILES, objects_of
 
 SCENES = ("box-reach", "box-reach-narrow", "empty", "shelf")
 """Names of the shipped scenes."""
+_ROWS_ALONE = frozenset(("obstacles", "name"))
 _SECTIONS = ("name", "allowed", "states", "limits", "attach")
 
 
@@ -133,6 +134,8 @@ def _of_document(document: Mapping[str, object], path: Path) -> Scene:
 
 def scene_of(document: Mapping[str, object], name: str) -> Scene:
     """Return the scene that a mapping describes as a file does; errors as :func:`load_scene`."""
+    if "obstacles" in document and document.keys() <= _ROWS_ALONE and (rows := _primitives(document)) is not None:
+        return Scene(rows, name=str(document.get("name", name)))
     return _of_document({"name": name, **document}, Path("scene"))
 
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "bind/arrays.hpp"
+#include "roadmap/ascending.hpp"
 #include "roadmap/graph.hpp"
 #include "roadmap/grow.hpp"
 #include "roadmap/kdtree.hpp"
@@ -50,6 +51,14 @@ class PeriodicPoints {
   FloatRows points_;
   Floats period_;
 };
+
+nb::object ascending_pairs(nb::handle pairs, std::int64_t count) {
+  // Memory grows with the count, too.
+  require_below(count, std::size_t{1} << 28, "count");
+  const auto nodes = static_cast<std::size_t>(count);
+  const Edges given(pairs, nodes);
+  return as_rows(without_gil([&] { return roadmap::ascending_pairs(given.matrix(), nodes); }), 2);
+}
 
 nb::object k_nearest(nb::handle points, nb::handle period, std::size_t k, bool earlier) {
   const PeriodicPoints given(points, period);
@@ -174,6 +183,7 @@ void add_roadmap(nb::module_& module) {
   part.def("join", &join, "label"_a.none(), "edges"_a.none());
   part.def("grow", &grow, "edges"_a.none(), "states"_a, "tree"_a.none(), "parent_edge"_a.none(), "away"_a.none(),
            "asked"_a.none(), "most"_a);
+  part.def("ascending_pairs", &ascending_pairs, "pairs"_a.none(), "count"_a);
   part.def("k_nearest", &k_nearest, "points"_a.none(), "period"_a.none(), "k"_a, "earlier"_a);
   part.def("pairs_within", &pairs_within, "points"_a.none(), "period"_a.none(), "radius"_a);
   part.def("distances_from", &distances_from, "points"_a.none(), "period"_a.none(), "point"_a.none());

@@ -1,6 +1,9 @@
-// evenroad._native.robot: entries of a scene's mapping that hold a primitive and its pose, and nothing else.
+// evenroad._native.robot: obstacles of a scene that are primitives and their poses, from entries of a mapping or
+// shapes.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <vector>
@@ -162,6 +165,84 @@ std::optional<GivenObstacle> obstacle_of(PyObject* given) {
   return {};
 }
 
+/// Return rows as an array, (n, 17).
+nb::object rows_from(std::span<const GivenObstacle> obstacles) {
+  constexpr std::size_t COLUMNS = sizeof(GivenObstacle) / sizeof(double);
+  std::vector<double> rows(COLUMNS * obstacles.size());
+  if (!rows.empty()) std::memcpy(rows.data(), obstacles.data(), sizeof(double) * rows.size());
+  return as_rows(std::move(rows), COLUMNS);
+}
+
+/// Read an attribute that is a row of numbers; return whether it is one.
+bool read_attribute(nb::handle value, const char* name, std::span<double> row) {
+  return read_row(nb::object(value.attr(name)).ptr(), row);
+}
+
+/// Read the dimensions of a shape whose fields are valid; return whether it is a body as rows have them.
+bool read_shape_size(nb::handle shape, GivenKind kind, GivenObstacle& obstacle) {
+  if (kind == GivenKind::BOX) return read_attribute(shape, "size", obstacle.size);
+  const auto radius = number(nb::object(shape.attr("radius")).ptr());
+  if (!radius) return false;
+  obstacle.size[0] = *radius;
+  if (kind == GivenKind::CYLINDER) obstacle.size[1] = nb::cast<double>(shape.attr("length"));
+  if (kind != GivenKind::CAPSULE) return true;
+  double a[3], b[3];
+  if (!read_attribute(shape, "a", a) || !read_attribute(shape, "b", b)) return false;
+  obstacle.size[1] = b[2] - a[2];
+  return a[0] == 0 && a[1] == 0 && b[0] == 0 && b[1] == 0 && b[2] == -a[2] && b[2] > 0;
+}
+
+/// Return boxes, spheres, cylinders and capsules along z as obstacles, (n, 17); None if one is of another type, or
+/// fixed to a link.  `types` are the four, in this order.
+nb::object shape_rows(nb::tuple shapes, nb::tuple types) {
+  require(nb::len(types) == std::size(PRIMITIVES), "types must be four");
+  std::vector<GivenObstacle> obstacles;
+  obstacles.reserve(nb::len(shapes));
+  for (const nb::handle shape : shapes) {
+    std::size_t k = 0;
+    while (k < std::size(PRIMITIVES) && types[k].ptr() != reinterpret_cast<PyObject*>(Py_TYPE(shape.ptr()))) k++;
+    if (k == std::size(PRIMITIVES) || nb::len(nb::object(shape.attr("link"))) != 0) return nb::none();
+    GivenObstacle obstacle{static_cast<double>(PRIMITIVES[k].kind), {}, {}, {}, 0.0};
+    const nb::object pose = shape.attr("pose");
+    if (!read_shape_size(shape, PRIMITIVES[k].kind, obstacle) || !read_attribute(pose, "rotation", obstacle.rotation) ||
+        !read_attribute(pose, "xyz", obstacle.translation)) {
+      return nb::none();
+    }
+    obstacles.push_back(obstacle);
+  }
+  return rows_from(obstacles);
+}
+
+/// Return whether sizes of obstacles, (n, 17), are usual for a robot of this reach: one is within it, none has all
+/// sides longer than `huge` and one longer than `large`, but for planes of these sides, and one has a side of at least
+/// `tiny`.
+bool are_usual(nb::handle rows, nb::handle plane, double reach, double large, double huge, double tiny) {
+  const FloatRows given = float_rows(rows, "rows", sizeof(GivenObstacle) / sizeof(double));
+  const Array<const double, 1> of_plane(plane, "plane");
+  of_plane.of_shape({3});
+  bool reached = false, sized = false;
+  for (std::size_t i = 0; i < given.shape(0); i++) {
+    GivenObstacle o;
+    std::memcpy(&o, given.matrix()[i].data(), sizeof(o));
+    const bool is_box = o.kind == 0, is_sphere = o.kind == 1, is_capsule = o.kind == 3;
+    const double width = 2.0 * o.size[0], length = is_sphere ? width : o.size[1] + (is_capsule ? width : 0.0);
+    const double sides[3] = {is_box ? o.size[0] : width, is_box ? o.size[1] : width, is_box ? o.size[2] : length};
+    double squared = 0;
+    for (int j = 0; j < 3; j++) {
+      double middle = 0;
+      for (int k = 0; k < 3; k++) middle += o.translation[k] * o.rotation[3 * k + j];
+      const double away = std::max(std::abs(middle) - 0.5 * sides[j], 0.0);
+      squared += away * away;
+    }
+    reached |= squared <= (reach + o.clearance) * (reach + o.clearance);
+    const double longest = std::max({sides[0], sides[1], sides[2]});
+    sized |= longest >= tiny;
+    if (std::equal(sides, sides + 3, of_plane.data())) continue;
+    if (longest > large && std::min({sides[0], sides[1], sides[2]}) > huge) return false;
+  }
+  return reached && sized;
+}
+
 /// Return the obstacles of a scene's mapping, (n, 17); None if one is more than a primitive and its pose, or is wrong.
 nb::object primitive_rows(nb::dict entries) {
   std::vector<GivenObstacle> obstacles;
@@ -173,14 +254,16 @@ nb::object primitive_rows(nb::dict entries) {
     if (!obstacle) return nb::none();
     obstacles.push_back(*obstacle);
   }
-  constexpr std::size_t COLUMNS = sizeof(GivenObstacle) / sizeof(double);
-  std::vector<double> rows(COLUMNS * obstacles.size());
-  if (!rows.empty()) std::memcpy(rows.data(), obstacles.data(), sizeof(double) * rows.size());
-  return as_rows(std::move(rows), COLUMNS);
+  return rows_from(obstacles);
 }
 
 }  // namespace
 
-void add_scene_entries(nb::module_& part) { part.def("primitive_rows", &primitive_rows); }
+void add_scene_entries(nb::module_& part) {
+  part.def("primitive_rows", &primitive_rows);
+  part.def("shape_rows", &shape_rows);
+  part.def("are_usual", &are_usual, nb::arg("rows").none(), nb::arg("plane").none(), nb::arg("reach"), nb::arg("large"),
+           nb::arg("huge"), nb::arg("tiny"));
+}
 
 }  // namespace evenroad::bind
