@@ -45,6 +45,8 @@ COLUMNS += ("answer", "reason")
 WRITTEN = ("accepted", "refused", "refused in C", "crashed in C")
 IN_C = Path("out/evenroad-verify")
 PACKAGE = re.compile(r"package://([^/\"]+)/([^\"]+)\"")
+AT_ONCE = 50
+"""Questions that a process answers."""
 PATIENCE = 120.0
 """How long the checker in C may take [s]."""
 
@@ -163,7 +165,7 @@ def main() -> None:
     parser.add_argument("--queries", type=int, default=3, help="of each robot")
     parser.add_argument("--out", type=Path, default=Path("out/certificates.csv"))
     parser.add_argument("--seconds", type=float, default=1.0, help="for one plan")
-    parser.add_argument("--limit", type=float, default=60.0, help="seconds of processor for one robot")
+    parser.add_argument("--limit", type=float, default=60.0, help="seconds of processor for one robot, or 50 questions")
     parser.add_argument("--minutes", type=float, default=600.0, help="for this slice")
     parser.add_argument("--keep", type=Path, help="a folder for certificates that are refused")
     parser.add_argument("--one", type=int, nargs="*", help=argparse.SUPPRESS)
@@ -175,18 +177,16 @@ def main() -> None:
             writer.writerow({"robot": options.robots[0], **row})
             sys.stdout.flush()
         return
-    rows = _read(options.out)
     end = time.monotonic() + 60.0 * options.minutes
+    more = ["--seconds", str(options.seconds), *(["--keep", str(options.keep)] if options.keep else [])]
     for path in _chosen(options.robots):
-        mine = [row for row in rows if row["robot"] == path]
-        asked = set(range(options.queries)) - {int(row["query"] or -1) for row in mine}
-        if not asked or any(row["answer"] == "failed" for row in mine):
-            continue
-        if time.monotonic() > end:
-            break
-        more = ["--seconds", str(options.seconds), *(["--keep", str(options.keep)] if options.keep else [])]
-        _ask(path, sorted(asked), more, options.limit, options.out)
-        rows = _read(options.out)
+        mine = [row for row in _read(options.out) if row["robot"] == path]
+        left = sorted(set(range(options.queries)) - {int(row["query"] or -1) for row in mine})
+        failed = any(row["answer"] == "failed" for row in mine)
+        for some in [] if failed else [left[i : i + AT_ONCE] for i in range(0, len(left), AT_ONCE)]:
+            if time.monotonic() < end:
+                _ask(path, some, more, options.limit, options.out)
+    rows = _read(options.out)
     print(summary(rows))
 
 
