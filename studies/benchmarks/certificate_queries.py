@@ -182,7 +182,7 @@ class Draw:
             q = world.space.from_cube(rng.random((200, world.space.cube_dim)))
             free = q[world.valid(q)]
             if len(free) > 1:
-                return Question(world, free[0], free[-1], str(rng.choice(bodied)) if "kept" in self.extras else "")
+                return Question(world, free[0], free[-1], bodied[-1] if "kept" in self.extras else "")
         return None
 
 

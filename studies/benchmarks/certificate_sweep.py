@@ -35,6 +35,7 @@ from studies.benchmarks.rows import parser_of
 import evenroad as er
 from evenroad.certificates.certify import certify
 from evenroad.errors import EvenroadError
+from evenroad.roadmap import Budget
 from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import verify
@@ -48,10 +49,10 @@ PACKAGE = re.compile(r"package://([^/\"]+)/([^\"]+)\"")
 AT_ONCE = 50
 """Questions that a process answers."""
 PATIENCE = 120.0
-"""How long the checker in C may take [s]."""
+"""How long a plan, and the checker in C, may take [s]."""
 
 
-def rows_of(path: Path | str, numbers: Iterable[int], seconds: float, keep: Path | None) -> Iterator[dict[str, Any]]:
+def rows_of(path: Path | str, numbers: Iterable[int], motions: int, keep: Path | None) -> Iterator[dict[str, Any]]:
     """Yield a row for each question about a robot; certificates that are refused are kept in a folder, if there is one.
 
     A robot that cannot be read raises.
@@ -66,7 +67,7 @@ def rows_of(path: Path | str, numbers: Iterable[int], seconds: float, keep: Path
             try:
                 if "base" in draw.extras:
                     moving = moving or tried.on_a_base(Path(folder))
-                row |= _answered(draw, moving if moving and "base" in draw.extras else tried, seconds, file)
+                row |= _answered(draw, moving if moving and "base" in draw.extras else tried, motions, file)
             except EvenroadError as error:
                 row |= {"answer": "no question", "reason": str(error)}
             if keep and row["answer"] in WRITTEN[1:]:
@@ -89,13 +90,14 @@ def packages_of(path: Path | str) -> dict[str, Path]:
     return found
 
 
-def _answered(draw: Draw, tried: Tried, seconds: float, file: Path) -> dict[str, Any]:
+def _answered(draw: Draw, tried: Tried, motions: int, file: Path) -> dict[str, Any]:
     """Return what becomes of one question."""
     question = draw.question(tried)
     if question is None:
         return {"answer": "no question", "reason": "no two free states"}
     begin = time.process_time()
-    result = er.plan(question.world, question.start, question.goal, seconds=seconds)
+    limits = Budget(seconds=PATIENCE, motions=motions)
+    result = er.plan(question.world, question.start, question.goal, limits=limits)
     row: dict[str, Any] = {"joints": question.world.space.dim, "plan_ms": _ms(begin)}
     if not result.solved or result.path is None:
         return row | {"answer": "no path", "reason": result.status}
@@ -164,7 +166,7 @@ def main() -> None:
     parser.add_argument("robots", nargs="*", help="folders, files, or names")
     parser.add_argument("--queries", type=int, default=3, help="of each robot")
     parser.add_argument("--out", type=Path, default=Path("out/certificates.csv"))
-    parser.add_argument("--seconds", type=float, default=1.0, help="for one plan")
+    parser.add_argument("--motions", type=int, default=10_000, help="that a plan may check: its time does not count")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds of processor for one robot, or 50 questions")
     parser.add_argument("--minutes", type=float, default=600.0, help="for this slice")
     parser.add_argument("--keep", type=Path, help="a folder for certificates that are refused")
@@ -173,12 +175,12 @@ def main() -> None:
     if options.one is not None:
         warnings.simplefilter("ignore")
         writer = csv.DictWriter(sys.stdout, COLUMNS, restval="")
-        for row in rows_of(options.robots[0], options.one, options.seconds, options.keep):
+        for row in rows_of(options.robots[0], options.one, options.motions, options.keep):
             writer.writerow({"robot": options.robots[0], **row})
             sys.stdout.flush()
         return
     end = time.monotonic() + 60.0 * options.minutes
-    more = ["--seconds", str(options.seconds), *(["--keep", str(options.keep)] if options.keep else [])]
+    more = ["--motions", str(options.motions), *(["--keep", str(options.keep)] if options.keep else [])]
     for path in _chosen(options.robots):
         mine = [row for row in _read(options.out) if row["robot"] == path]
         left = sorted(set(range(options.queries)) - {int(row["query"] or -1) for row in mine})
