@@ -21,7 +21,7 @@ OF_AN_ARM = er.plan(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (0.5, -1.5, 0.
 
 
 class Page:
-    address = "http://127.0.0.1:1234"
+    address = "http://127.0.0.1:1234/token"
 
     def __init__(self, world, result, plan, file, *, timed, port):
         self.timed = timed
@@ -41,7 +41,7 @@ def pages(monkeypatch):
     """The pages that a browser was opened for."""
     opened = []
     monkeypatch.setattr(shows, "ArmPage", Page)
-    monkeypatch.setattr(shows.webbrowser, "open", lambda address: opened.append(address) is None)
+    monkeypatch.setattr(shows, "open_browser", lambda address: opened.append(address) is None)
     return opened
 
 
@@ -71,7 +71,7 @@ def test_in_a_notebook_an_arm_stays_below_the_cell(pages, notebook):
 
 
 def test_where_no_browser_opens_the_address_is_printed_and_the_page_is_served(pages, monkeypatch, capsys):
-    monkeypatch.setattr(shows.webbrowser, "open", lambda address: False)
+    monkeypatch.setattr(shows, "open_browser", lambda address: False)
     page = er.show(OF_AN_ARM)
     assert page.address in capsys.readouterr().out
     assert page.done == ["served", "closed"]
@@ -86,7 +86,6 @@ def test_a_trajectory_is_served_with_its_times(pages):
 @pytest.mark.parametrize("what", [
     er.load_robot("ur5"),
     er.load_scene("shelf"),
-    ON_A_MAP.trajectory(speed=1.0),
     Task([MoveTo("inside"), MoveTo("home")]).plan(er.ArmWorld("ur5", "box-reach"), "home"),
     "office.yaml",
 ], ids=lambda what: type(what).__name__)  # fmt: skip
@@ -103,14 +102,30 @@ def test_a_saved_plan_is_shown_by_its_name(pages, tmp_path):
     assert er.show(tmp_path / "plan.json").done == ["served", "closed"]
 
 
-@pytest.mark.parametrize("what", [MAP, ON_A_MAP])
-def test_maps_and_disks_are_pictures(what, notebook, monkeypatch):
-    assert np.array_equal(np.asarray(er.show(what)), np.asarray(what.plot()))
-    assert len(notebook) == 1
+def test_a_map_and_a_plan_without_a_path_are_pictures(notebook, monkeypatch):
+    for what in (MAP, er.plan(MAP.world(radius=0.2), (0.5, 3.5), (9.0, 3.5))):
+        assert np.array_equal(np.asarray(er.show(what)), np.asarray(what.plot()))
+    assert len(notebook) == 2
     monkeypatch.delitem(sys.modules, "IPython")
     viewed = []
     monkeypatch.setattr(Image.Image, "show", lambda picture: viewed.append(picture))
-    assert viewed == [er.show(what)]
+    assert viewed == [er.show(MAP)]
+
+
+@pytest.mark.parametrize(("what", "timed"), [(ON_A_MAP, False), (ON_A_MAP.trajectory(speed=1.0), True)])
+def test_a_plan_on_a_map_and_its_trajectory_are_served_and_play(what, timed, monkeypatch):
+    texts = []
+
+    def serve(page):
+        texts.append(page.page())
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(shows.PageServer, "serve", serve)
+    monkeypatch.setattr(shows, "open_browser", lambda address: True)
+    er.show(what)
+    (text,) = texts
+    assert '"kind":"map"' in text
+    assert f'"timed":{str(timed).lower()}' in text
 
 
 @pytest.mark.parametrize("what", [None, np.zeros((3, 2)), er.Pose()])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import webbrowser
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
@@ -32,6 +31,7 @@ from evenroad.task.save import is_task, load_parts
 from evenroad.trajectory.car import are_free
 from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.corners import drivable
+from evenroad.viz.browser import how_to_open, open_browser
 
 SECONDS = 0.5
 """Time limit for planning again while a start or goal is dragged [s]."""
@@ -97,7 +97,7 @@ class View(RobotOptions):
             else:
                 page = Path(f"{self.world.stem}.html")
                 self._save_page(plan, page)
-                webbrowser.open(page.resolve().as_uri())
+                open_browser(page.resolve().as_uri())
         return 0
 
     def _show_task(self) -> int:
@@ -110,7 +110,7 @@ class View(RobotOptions):
         plot_parts(load_parts(self.world), file)
         print(f"wrote {file}")
         if self.png is None:
-            webbrowser.open(file.resolve().as_uri())
+            open_browser(file.resolve().as_uri())
         return 0
 
     def plan_file(self) -> PlanFile:
@@ -165,8 +165,7 @@ class View(RobotOptions):
             return self._planned(replace(problem, world=world, start=start, goals=goals, given=None))
 
         page = ArmPage(problem.arm, plan.result, again, self._file(plan), timed=_times(plan), port=self.port)
-        print(f"{page.address}   (Ctrl-C ends it)", flush=True)
-        webbrowser.open(page.address)
+        print(how_to_open(page.address, open_browser(page.address)), flush=True)
         try:
             page.serve()
         finally:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from threading import Lock
@@ -98,8 +97,7 @@ class ArmPage:
 
     def serve(self) -> None:
         """Serve the page until Ctrl-C."""
-        while True:
-            time.sleep(1.0)
+        self._server.serve()
 
     def close(self) -> None:
         """Stop serving."""

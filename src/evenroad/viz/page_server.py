@@ -10,6 +10,7 @@ import ipaddress
 import secrets
 import socket
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -66,13 +67,17 @@ class PageGuard:
 class PageServer(ThreadingTCPServer):
     """A page served at an address: `page` returns its text, and `change` the answer to what the browser sends.
 
+    A page that only plays answers nothing.
+
     Raises NotAvailable if the port is taken.
     """
 
     allow_reuse_address = True
     daemon_threads = True
 
-    def __init__(self, host: str, port: int, page: Callable[[], str], change: Callable[[bytes], bytes | None]) -> None:
+    def __init__(
+        self, host: str, port: int, page: Callable[[], str], change: Callable[[bytes], bytes | None] = lambda _: None
+    ) -> None:
         self.guard, self.page, self.change = PageGuard.of(host), page, change
         try:
             super().__init__((host, port), _Handler)
@@ -85,6 +90,11 @@ class PageServer(ThreadingTCPServer):
     def address(self) -> str:
         """Address of the page, for a browser; its token lets nobody else in."""
         return f"http://{self.guard.host}:{self.server_address[1]}/{self.guard.token}"
+
+    def serve(self) -> None:
+        """Serve until Ctrl-C."""
+        while True:
+            time.sleep(1.0)
 
     def close(self) -> None:
         """Stop serving."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-import webbrowser
 from collections.abc import Callable
 from importlib import import_module
 from types import ModuleType
@@ -14,6 +13,7 @@ from PIL import Image
 
 from evenroad._load import load
 from evenroad.collision.arm_world import ArmWorld
+from evenroad.driving.car_world import CarWorld
 from evenroad.errors import InvalidValue, shown
 from evenroad.loading.cache import file_of
 from evenroad.planning.make_result import make_result
@@ -26,10 +26,13 @@ from evenroad.task.motion import Motion
 from evenroad.task.result import TaskResult
 from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.trajectory import Trajectory
+from evenroad.viz.browser import how_to_open, open_browser
 from evenroad.viz.page import ArmPage
+from evenroad.viz.page_server import PageServer
+from evenroad.viz.player import page_of
 from evenroad.viz.posture import draw_arm_world, draw_scene
 from evenroad.viz.result import plot_parts
-from evenroad.world.gridmap import GridMap
+from evenroad.world.gridmap import DiskWorld, GridMap
 
 Shown: TypeAlias = (
     PlanResult
@@ -49,8 +52,10 @@ HEIGHT = 600
 """Height of the page below a notebook's cell [pixels]."""
 
 
-def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | Image.Image:
-    """Show a plan or a trajectory of an arm as a page in the browser, with its path under a slider; else a picture.
+def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | PageServer | Image.Image:
+    """Show a plan or a trajectory as a page in the browser that plays it: an arm, or a disk or a car on its map.
+
+    An arm's page plans again as start, goal and obstacles are dragged.  All else is a picture.
 
     A robot, also in its scene, is a picture of it at a configuration, with what touches in red.  The title says what
     touches, or which two bodies are nearest, and how far.  A task is the pictures of its motions.  In a notebook all
@@ -64,11 +69,11 @@ def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | Image.Ima
         The configuration at which a robot is shown, as `ArmWorld.valid` takes one.  Default: the state ``home``, or
         where there is none all joints at 0, or at the nearest to it within limits.
     port : int
-        Where the page of an arm is served, on this computer alone; 0 takes any that is free.
+        Where the page is served, on this computer alone; 0 takes any that is free.
 
     Returns
     -------
-    ArmPage or PIL.Image.Image
+    ArmPage, PageServer or PIL.Image.Image
         The page, which is closed unless it is shown in a notebook; or the picture.
 
     Raises
@@ -93,8 +98,8 @@ def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | Image.Ima
         raise InvalidValue(f"q says where a robot stands, also in an er.ArmWorld, got q={shown(q)} with something else")
     notebook = _notebook()
     moving = what if isinstance(what, PlanResult) else _driven(what)
-    if moving is not None and isinstance(moving.world, ArmWorld):
-        return _served(moving, what, port, notebook)
+    if moving is not None and (page := _page(moving, what, port)) is not None:
+        return _served(page, notebook)
     if moving is not None:
         picture = moving.plot()
     else:
@@ -135,18 +140,26 @@ def _pictures(q: object) -> list[tuple[type, Callable[..., Image.Image]]]:
     ]
 
 
-def _served(result: PlanResult, what: object, port: int, notebook: ModuleType | None) -> ArmPage:
-    """Serve the page of an arm's plan until Ctrl-C, or show it below a notebook's cell."""
+def _page(result: PlanResult, what: object, port: int) -> ArmPage | PageServer | None:
+    """Return the page that plays a plan; None if only a picture shows it."""
     world = result.world
-    assert isinstance(world, ArmWorld), "only of an arm"
-    timed = (what.times, what.positions) if isinstance(what, Trajectory) else None
-    page = ArmPage(world, result, plan_path, file_of(world.robot), timed=timed, port=port)
+    timed = (what.times, what.positions) if isinstance(what, Trajectory | CarTrajectory) else None
+    if isinstance(world, ArmWorld):
+        return ArmPage(world, result, plan_path, file_of(world.robot), timed=timed, port=port)
+    if not isinstance(world, DiskWorld | CarWorld) or result.path is None:
+        return None
+    text = page_of(result, timed=timed)
+    return PageServer("127.0.0.1", port, lambda: text)
+
+
+def _served(page: ArmPage | PageServer, notebook: ModuleType | None) -> ArmPage | PageServer:
+    """Serve a page until Ctrl-C, or show it below a notebook's cell."""
     if notebook is not None:
         notebook.display(notebook.IFrame(page.address, "100%", HEIGHT))
         return page
     try:
-        if not webbrowser.open(page.address):
-            print(f"{page.address}   (Ctrl-C ends it)", flush=True)
+        if not open_browser(page.address):
+            print(how_to_open(page.address, is_open=False), flush=True)
         page.serve()
     except KeyboardInterrupt:
         pass

@@ -3,8 +3,7 @@ const RED = [0.86, 0.16, 0.2];
 
 function showArm() {
   // Without a graphics card edges are smooth only while nothing moves.
-  const fast = canvas.getContext("webgl2", { antialias: true, alpha: false, failIfMajorPerformanceCaveat: true });
-  const bySoftware = !fast, gl = fast || canvas.getContext("webgl2", { antialias: false, alpha: false });
+  const bySoftware = isDrawnBySoftware(), gl = canvas.getContext("webgl2", { antialias: !bySoftware, alpha: false });
   if (!gl) { $("note").textContent = "This browser has no WebGL 2, which shows an arm."; return null; }
   const painter = makePainter(gl), bodies = data.bodies.map(bodyOf);
   function bodyOf(body) {
@@ -55,7 +54,7 @@ function showArm() {
   const made = { painter, bodies, bodyOf, camera, follow, points, ground: ground.z, after: () => {} };
   draw = () => {
     const paper = getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).map((each) => each / 255);
-    const dense = !bySoftware ? Math.min(devicePixelRatio || 1, 2) : state.playing || state.held ? 0.75 : 1.5;
+    const dense = !bySoftware ? Math.min(devicePixelRatio || 1, 2) : state.playing || state.held || live ? 0.75 : 1.25;
     [canvas.width, canvas.height] = [innerWidth, innerHeight].map((each) => Math.round(each * dense));
     if (!camera.eye.own) camera.fitted();
     const view = camera.view(), poses = posesAt(valueOf), poseOf = (body) => body.pose || poses[body.link];
@@ -102,6 +101,10 @@ function showArm() {
   return made;
 }
 
+function isDrawnBySoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2"), names = gl && gl.getExtension("WEBGL_debug_renderer_info");
+  return Boolean(names) && /swiftshader|llvmpipe|softpipe|basic render/i.test(gl.getParameter(names.UNMASKED_RENDERER_WEBGL));
+}
 function everyNth(vertices, step) {
   const found = [];
   for (let i = 0; i < vertices.length; i += 3 * step) found.push(vertices.subarray(i, i + 3));
