@@ -47,12 +47,13 @@ MAY_IMPORT = {
     "_load": BASE | {*VALUES, "driving", "scenes", "roadmap", "planning", "trajectory", "io"},
     "io": BASE | {"saved", *VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
     "testing": BASE | {"space", "world"},
-    "viz": BASE | {*VALUES, *OF_ARMS, "driving", "constraints", "roadmap", "planning", "trajectory", "task", "_load"},
+    "viz": BASE
+    | {*VALUES, *OF_ARMS, "driving", "flight", "constraints", "roadmap", "planning", "trajectory", "task", "_load"},
     "adapters": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
     "ros2": BASE | {*VALUES, *OF_ARMS, "driving", "planning", "trajectory"},
     "cli": BASE
     | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory", "task", "datasets", "io", "viz"}
-    | {"certificates", "driving", "ros2", "saved"},
+    | {"certificates", "driving", "flight", "ros2", "saved"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

@@ -146,6 +146,8 @@ LEAVES = {
     "16": ("moving.png",),
     "17": ("parking.csv", "parking.png"),
     "18": ("door.png", "door.yaml"),
+    "19": ("arm.script", "gripper.png", "gripper.urdf", "gripper.yaml"),
+    "20": ("flight.csv", "flight.json", "flight.png"),
 }
 """Number of an example -> the files that it leaves in the folder."""
 

@@ -1,4 +1,4 @@
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Bools, Floats, Ints
 
 class Limits:
     """Largest speed and acceleration of each axis, (3,) each, and the quickest motions within them."""
@@ -18,14 +18,27 @@ class Airspace:
     """Where a ball may fly: among bodies, within bounds and limits; it never changes.
 
     Solids are rows of 17 numbers as of a scene, `triangles` rows of nine coordinates and a rounding, `balls` rows of a
-    centre and a radius.  Bodies are numbered in this order.  `bounds` are two corners.
+    centre and a radius.  Bodies are numbered in this order.  `movers` are numbers of solids that may move, `bounds` two
+    corners.
     """
 
     def __init__(
-        self, solids: Floats, triangles: Floats, balls: Floats, bounds: Floats, limits: Limits, radius: float
+        self,
+        solids: Floats,
+        triangles: Floats,
+        balls: Floats,
+        movers: Ints,
+        bounds: Floats,
+        limits: Limits,
+        radius: float,
     ) -> None: ...
     def states_free(self, q: Floats) -> Bools: ...
     def motions_free(self, a: Floats, b: Floats) -> Bools: ...
+    def with_moved(self, positions: Floats, velocities: Floats) -> Airspace: ...
+    def path_free(self, path: Floats) -> Bools: ...
+    def free_until(self, path: Floats, horizon: float) -> float: ...
+    def follow(self, path: Floats, elapsed: float, here: Floats) -> Floats: ...
+    def stop(self, here: Floats) -> Floats: ...
     def nearest(self, at: Floats, most: float) -> Nearest: ...
 
 class FlightQuery:

@@ -20,6 +20,7 @@ BAD_INPUT = 2
 
 VERBS = {
     "plan": ("evenroad.cli.plan:PlanDisk", "plan a path, for a disk on a map or for an arm in a scene (--robot)"),
+    "fly": ("evenroad.cli.fly:Fly", "plan a flight of a ball among the obstacles of a scene"),
     "run": ("evenroad.cli.run:RunTask", "plan a task of several motions from its file, as one trajectory"),
     "roadmap": ("evenroad.cli.roadmap:MakeRoadmap", "build a roadmap of an arm's joints, for many plans"),
     "view": ("evenroad.cli.view:View", "show a plan in the browser, or write it as HTML, PNG or GIF"),
@@ -61,7 +62,7 @@ ENTRY_POINTS = "evenroad.verbs"
 
 GROUPS = {
     "a path, from the plan to the robot": (
-        ("plan", "view", "send", "ros2", "run", "certify-path", "roadmap", "robot", "pairs", "generate", "demo"),
+        ("plan", "view", "send", "ros2", "run", "fly", "certify-path", "roadmap", "robot", "pairs", "generate", "demo"),
         (
             "evenroad plan box-reach.yaml --robot ur5 --start home --goal inside",
             "evenroad view box-reach.json --html reach.html",

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._call import explains_calls
-from evenroad._checks import FARTHEST, as_batch, as_row, counted, require_positive
+from evenroad._checks import FARTHEST, as_batch, as_row, counted, require_known, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad._native.flight import Airspace
 from evenroad.errors import InvalidValue, NotAvailable, shown
@@ -24,6 +25,8 @@ from evenroad.world.one_or_many import OneOrMany, one_or_many
 
 _BEYOND = 100.0
 """Least distance of the default bounds from the obstacles [m]."""
+HORIZON = 1000.0
+"""Default time up to which obstacles keep their velocities [s]."""
 _NEAREST = 1e-2
 """Distance up to which an obstacle is named that is in the way, beyond the radius [m]."""
 
@@ -52,6 +55,8 @@ class FlightWorld(OneOrMany):
     bounds : sequence of 3 pairs of floats, optional
         Least and largest x, y and z of the middle of the ball [m].  Two equal numbers hold an axis: the flight is then
         planar.  Default: the box around all obstacles, larger by its longest side and 100 m.
+    velocities : mapping of str to 3 floats
+        Obstacle -> its velocity, of those that move [m/s]; the scene is that of time 0.  Meshes and clouds stay.
 
     Raises
     ------
@@ -76,10 +81,12 @@ class FlightWorld(OneOrMany):
     acceleration: Vector | float = field(kw_only=True)
     jerk: None = field(default=None, kw_only=True)
     bounds: Sequence[Sequence[float]] | None = field(default=None, kw_only=True)
+    velocities: Mapping[str, Sequence[float]] = field(default_factory=dict, kw_only=True)
     space: FlightSpace = field(init=False, repr=False)
     airspace: Airspace = field(init=False, repr=False)
     """The obstacles and limits, as compiled code has them."""
     _bodies: FlightBodies = field(init=False, repr=False)
+    _at: Floats = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.jerk is not None:
@@ -92,13 +99,20 @@ class FlightWorld(OneOrMany):
         bodies = bodies_of(scene)
         low, high = _default_bounds(bodies.box) if self.bounds is None else _as_bounds(self.bounds)
         space = FlightSpace(low, high, speed, acceleration)
-        airspace = Airspace(bodies.solids, bodies.triangles, bodies.balls, np.array([low, high]), space.native, radius)
+        velocities = {name: _as_velocity(name, each) for name, each in self.velocities.items()}
+        movers = np.array([_number_of(name, bodies, scene) for name in velocities], dtype=np.int64)
+        airspace = Airspace(
+            bodies.solids, bodies.triangles, bodies.balls, movers, np.array([low, high]), space.native, radius
+        )
+        if velocities:
+            airspace = airspace.with_moved(bodies.solids[movers, 13:16].copy(), np.array([*velocities.values()]))
+        set_fields(self, velocities=velocities, _at=bodies.solids[movers, 13:16].copy())
         set_fields(self, scene=scene, radius=radius, speed=speed, acceleration=acceleration)
         set_fields(self, bounds=tuple(zip(low, high, strict=True)), space=space, airspace=airspace, _bodies=bodies)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return what a copy is made of, here or in another process: it makes its own tables."""
-        return _world_of, (self.scene, self.radius, self.speed, self.acceleration, self.bounds)
+        return _world_of, (self.scene, self.radius, self.speed, self.acceleration, self.bounds, self.velocities)
 
     @property
     def proof(self) -> str:
@@ -133,9 +147,92 @@ class FlightWorld(OneOrMany):
         return free
 
     def validate(self, path: Floats) -> Bools:
-        """Return which motions of a path, (p, 6), are proved free: (p - 1,)."""
+        """Return which motions of a path, (p, 6), are proved free when it is flown from time 0 on: (p - 1,)."""
         states = as_batch("path", path, 6)
-        return np.asarray(self.motion_valid(states[:-1], states[1:]))
+        free = self.airspace.path_free(states)
+        for solid in self._bodies.inside:
+            free &= ~solid.contains(states[:-1, :3])
+        return free
+
+    def free_until(self, path: Floats, horizon: float = HORIZON) -> float:
+        """Return until when a flight is proved free, from time 0 on, with the rest at its last state.
+
+        Parameters
+        ----------
+        path : array_like, shape (p, 6)
+            States, joined by the quickest motions.
+        horizon : float
+            Time up to which the motions of obstacles are known, >= 0 [s].
+
+        Returns
+        -------
+        float
+            At most the horizon; of a path that ends in motion, at most its duration [s].
+
+        Raises
+        ------
+        InvalidValue
+            If these are not such.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> ball = er.Scene([er.Sphere(0.5, xyz=(9, 0, 1), name="ball")])
+        >>> world = er.FlightWorld(ball, speed=6.0, acceleration=8.0, velocities={"ball": (-1, 0, 0)})
+        >>> path = er.plan(world, er.State((0, 0, 1)), er.State((0, 3, 1))).path
+        >>> world.free_until(path), round(world.free_until([path[0], path[0]]), 2)
+        (1000.0, 8.25)
+        """
+        limit = require_positive("horizon", horizon, or_zero=True, at_most=FARTHEST)
+        return self.airspace.free_until(as_batch("path", path, 6), limit)
+
+    def with_moved(
+        self,
+        positions: Mapping[str, Sequence[float]],
+        velocities: Mapping[str, Sequence[float]],
+        elapsed: float = 0.0,
+    ) -> FlightWorld:
+        """Return the world some time later, with obstacles that moved to other positions or have other velocities.
+
+        Parameters
+        ----------
+        positions, velocities : mapping of str to 3 floats
+            Obstacle -> its position [m] and velocity [m/s]; the others keep their velocity, and flew on.  Only those
+            move that the world has `velocities` of, which may be 0.
+        elapsed : float
+            How much later it is [s].
+
+        Returns
+        -------
+        FlightWorld
+            Its scene is still that of the beginning.
+
+        Raises
+        ------
+        UnknownName
+            For another obstacle.
+        InvalidValue
+            For numbers that are none.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> ball = er.Scene([er.Sphere(0.5, xyz=(9, 0, 1), name="ball")])
+        >>> world = er.FlightWorld(ball, speed=6.0, acceleration=8.0, velocities={"ball": (-1, 0, 0)})
+        >>> world.with_moved({}, {}, elapsed=9.0).valid((0, 0, 1, 0, 0, 0))
+        False
+        """
+        known = tuple(self.velocities)
+        to = np.array([*self.velocities.values()]).reshape(-1, 3)
+        at = self._at + elapsed * to
+        for table, given, what in ((at, positions, "position"), (to, velocities, "velocity")):
+            for name, value in given.items():
+                require_known("obstacle that moves:", name, known)
+                table[known.index(name)] = as_row(f"the {what} of {name!r}", value, 3, within=FARTHEST)
+        moved = copy(self)
+        set_fields(moved, _at=at, velocities=dict(zip(known, map(tuple, to.tolist()), strict=True)))
+        set_fields(moved, airspace=self.airspace.with_moved(at, to))
+        return moved
 
     def explain(self, q: Floats) -> str:
         """Return, in words, why a state, (6,), is not free: a limit, or the obstacle that is touched."""
@@ -156,12 +253,34 @@ class FlightWorld(OneOrMany):
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of obstacles, ball and limits: equal for worlds of equal results."""
         return fingerprint_of(
-            "flight", self.scene.fingerprint(), self.radius, self.speed, self.acceleration, self.bounds
+            *("flight", self.scene.fingerprint(), self.radius, self.speed, self.acceleration, self.bounds),
+            self.velocities,
+            self._at,
         )
 
 
-def _world_of(scene: Scene, radius: float, speed: Vector, acceleration: Vector, bounds: object) -> FlightWorld:
-    return FlightWorld(scene, radius, speed=speed, acceleration=acceleration, bounds=bounds)  # type: ignore[arg-type]
+def _world_of(
+    scene: Scene,
+    radius: float,
+    speed: Vector,
+    acceleration: Vector,
+    bounds: Sequence[Sequence[float]],
+    velocities: Mapping[str, Vector],
+) -> FlightWorld:
+    return FlightWorld(scene, radius, speed=speed, acceleration=acceleration, bounds=bounds, velocities=velocities)
+
+
+def _as_velocity(name: str, value: Sequence[float]) -> Vector:
+    x, y, z = as_row(f"the velocity of {name!r}", value, 3, within=FARTHEST)
+    return x, y, z
+
+
+def _number_of(name: str, bodies: FlightBodies, scene: Scene) -> int:
+    """Return the row of an obstacle that may move."""
+    require_known(f"obstacle of scene {scene.name!r}:", name, scene.names)
+    if name not in bodies.names[: len(bodies.solids)]:
+        raise InvalidValue(f"a mesh or a cloud cannot move, but {name!r} has a velocity")
+    return bodies.names.index(name)
 
 
 def _as_bounds(bounds: Sequence[Sequence[float]]) -> tuple[Vector, Vector]:

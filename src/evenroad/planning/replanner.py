@@ -23,6 +23,8 @@ from evenroad.scenes.scene import Scene
 
 if TYPE_CHECKING:
     from evenroad.driving import CarWorld, GoalRegion
+    from evenroad.flight import FlightWorld, State
+    from evenroad.planning.flight_updates import FlightUpdates
     from evenroad.planning.map_updates import Ahead, ChangedMap, MapUpdates
     from evenroad.world.gridmap import DiskWorld
 
@@ -35,11 +37,12 @@ class Replanner:
     the current scene, and shortens it where possible.  If the rest is not free, it plans a new path from the arm's
     configuration.  So every returned path is free in the current scene.
 
-    For a car or a disk the scene is a map: an update takes where the robot is, and its current cells.
+    For a car or a disk the scene is a map: an update takes where the robot is, and its current cells.  For a ball that
+    flies it takes the state in motion, and where obstacles are that move, with their velocities.
 
     Parameters
     ----------
-    world : ArmWorld, CarWorld or DiskWorld
+    world : ArmWorld, CarWorld, DiskWorld or FlightWorld
         The robot and its scene or map at the beginning.
     goal : as of :func:`evenroad.plan`
         A configuration, a named state, a pose, or several of them.  A pose stands for all postures that are free in the
@@ -55,8 +58,10 @@ class Replanner:
 
     Attributes
     ----------
-    world : ArmWorld, CarWorld or DiskWorld
+    world : ArmWorld, CarWorld, DiskWorld or FlightWorld
         The robot and its scene or map at the last update.
+    stop : ndarray, shape (2, 6), or None
+        Of what flies: the stop from the last state, which is proved; None if it is not.
     path : ndarray, shape (p, dim), or None
         The path of the last update.
 
@@ -96,27 +101,32 @@ class Replanner:
 
     def __init__(
         self,
-        world: ArmWorld | CarWorld | DiskWorld,
-        goal: Goal | GoalRegion | Sequence[Goal | GoalRegion],
+        world: ArmWorld | CarWorld | DiskWorld | FlightWorld,
+        goal: Goal | GoalRegion | State | Sequence[Goal | GoalRegion | State],
         *,
         motions: int = 600,
         rng: RngLike = 0,
         tip: str = "",
         frame: str = "",
     ) -> None:
-        self._updates: ArmUpdates | MapUpdates
+        self._updates: ArmUpdates | MapUpdates | FlightUpdates
         most = require_count("motions", motions)
         if isinstance(world, ArmWorld):
             self._updates = ArmUpdates(world, goal_of_arm(goal), most, rng, Reading(tip=tip, frame=frame))
         else:
-            # Imported late: an arm has no map.
+            # Imported late: an arm has no map, and does not fly.
+            from evenroad.flight.flight_world import FlightWorld
+            from evenroad.planning.flight_updates import FlightUpdates
             from evenroad.planning.map_updates import MapUpdates
 
-            self._updates = MapUpdates(world, goal, rng)
+            if isinstance(world, FlightWorld):
+                self._updates = FlightUpdates(world, goal, rng)
+            else:
+                self._updates = MapUpdates(world, goal, rng)
         self._lock = OwnLock()
 
     @property
-    def world(self) -> ArmWorld | CarWorld | DiskWorld:
+    def world(self) -> ArmWorld | CarWorld | DiskWorld | FlightWorld:
         """The robot and its scene or map at the last update."""
         return self._updates.world
 
@@ -125,15 +135,22 @@ class Replanner:
         """The path of the last update, (p, dim)."""
         return self._updates.path
 
+    @property
+    def stop(self) -> Floats | None:
+        """Of what flies: the stop from the state of the last update, (2, 6), if it is proved."""
+        return getattr(self._updates, "stop", None)
+
     def __repr__(self) -> str:
         return f"Replanner({self.world!r}, {self._updates.goals})"
 
     def update(
         self,
-        q: ConfigurationLike,
+        q: ConfigurationLike | State,
         scene: Scene | ChangedMap | None = None,
         *,
         moved: Mapping[str, Pose] | None = None,
+        velocities: Mapping[str, Sequence[float]] | None = None,
+        elapsed: float = 0.0,
         added: Bodies = (),
         removed: str | Sequence[str] = (),
     ) -> PlanResult:
@@ -149,6 +166,10 @@ class Replanner:
             :class:`evenroad.PolygonMap`.
         moved : mapping of str to Pose, optional
             Name of an obstacle -> its current pose.
+        velocities : mapping of str to 3 floats, optional
+            For what flies: name of an obstacle that moves -> its current velocity [m/s].
+        elapsed : float
+            For what flies: time since the last update, >= 0 [s].  Obstacles that are not in `moved` flew on.
         added : sequence of Shape or Obstacle
             New obstacles.
         removed : sequence of str
@@ -175,6 +196,15 @@ class Replanner:
         with self._lock:
             if isinstance(self._updates, ArmUpdates):
                 return self._updates.update(q, scene, moved, added, removed)
+            # Imported late, as above.
+            from evenroad.planning.flight_updates import FlightUpdates
+
+            if isinstance(self._updates, FlightUpdates):
+                if scene is not None or added or removed:
+                    raise InvalidValue("for what flies obstacles move: give moved and velocities")
+                return self._updates.update(q, moved, velocities, elapsed)
+            if velocities is not None or elapsed:
+                raise InvalidValue("velocities and elapsed are for what flies, in a FlightWorld")
             if moved is not None or added or removed:
                 raise InvalidValue("obstacles that are moved, added or removed are an arm's; a map has new cells")
             return self._updates.update(q, scene)
@@ -212,6 +242,9 @@ class Replanner:
         Ahead(free_until=6.0, length=6.0)
         """
         with self._lock:
-            if isinstance(self._updates, ArmUpdates):
-                raise InvalidValue("ahead is of cars and disks: an arm's update says whether its path is kept")
+            # Imported late, as above.
+            from evenroad.planning.map_updates import MapUpdates
+
+            if not isinstance(self._updates, MapUpdates):
+                raise InvalidValue("ahead is of cars and disks: the update of others says whether its path is kept")
             return self._updates.ahead(q, scene)

@@ -201,6 +201,12 @@ class PlanResult(Rows, metaclass=KnowsElsewhere):
         length = path_length(self.path, self.world.space)
         return max(length / least - 1.0, 0.0) if least > 0.0 else 0.0 if length == 0.0 else np.inf
 
+    @cached_property
+    def free_until(self) -> float | None:
+        """Until when a flight is proved free, its rest at the goal included [s]; None of what does not fly."""
+        proved = getattr(self.world, "free_until", None)
+        return None if self.path is None or proved is None else float(proved(self.path))
+
     @property
     def solved(self) -> bool:
         """Whether a path was found."""

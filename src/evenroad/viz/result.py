@@ -36,11 +36,13 @@ def plot_result(
 
 
 def _draw_other(result: PlanResult, world: World | None) -> Image.Image:
-    """Return the picture of a plan that is kept by constraints, or on a map."""
+    """Return the picture of a plan that is kept by constraints, on a map, or of a flight."""
     # Imported late: a picture of an arm needs none of it.
     from evenroad.constraints.constrained_world import KeptWorld
     from evenroad.driving.car_world import CarWorld
+    from evenroad.flight.flight_world import FlightWorld
     from evenroad.viz.car import draw_car_plan
+    from evenroad.viz.flight import draw_flight_plan
     from evenroad.viz.plan import draw_plan
     from evenroad.world.gridmap import DiskWorld
 
@@ -51,8 +53,10 @@ def _draw_other(result: PlanResult, world: World | None) -> Image.Image:
             return draw_plan(result, world)
         case CarWorld():
             return draw_car_plan(result, world)
+        case FlightWorld():
+            return draw_flight_plan(result, world)
     known = "its world is not known: plot(world=...)" if world is None else f"its world is a {type(world).__name__}"
-    raise NotAvailable(f"plans of disks and cars on maps and of arms can be drawn, but of this one {known}")
+    raise NotAvailable(f"plans of disks and cars on maps, of arms and of flights can be drawn, but of this one {known}")
 
 
 def plot_parts(parts: Sequence[PlanResult], path: str | os.PathLike[str] | None = None) -> Image.Image:

@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "bind/arrays.hpp"
+#include "flight/follow.hpp"
 #include "flight/query.hpp"
 
 namespace evenroad::bind {
@@ -135,8 +136,15 @@ std::vector<flight::Ball> balls_of(nb::handle given) {
   return balls;
 }
 
-void make_airspace(flight::Airspace* self, nb::handle solids, nb::handle triangles, nb::handle balls, nb::handle bounds,
-                   const flight::Limits& limits, double radius) {
+/// Numbers of solids that may move.
+std::vector<std::uint32_t> movers_of(nb::handle given, std::size_t solids) {
+  const Array<const std::int64_t, 1> numbers(given, "movers");
+  require_below(numbers.span(), solids, "movers");
+  return {numbers.span().begin(), numbers.span().end()};
+}
+
+void make_airspace(flight::Airspace* self, nb::handle solids, nb::handle triangles, nb::handle balls, nb::handle movers,
+                   nb::handle bounds, const flight::Limits& limits, double radius) {
   const FloatRows corners = float_rows(bounds, "bounds", 3);
   corners.of_shape({2, 3});
   require_within(corners.span(), -FARTHEST, FARTHEST, "bounds");
@@ -144,10 +152,67 @@ void make_airspace(flight::Airspace* self, nb::handle solids, nb::handle triangl
   std::vector<flight::Solid> all = solids_of(solids);
   std::vector<flight::Triangle> sides = triangles_of(triangles);
   std::vector<flight::Ball> points = balls_of(balls);
+  std::vector<std::uint32_t> moving = movers_of(movers, all.size());
   const flight::Bounds within{vector_of(corners.matrix()[0]), vector_of(corners.matrix()[1])};
   without_gil([&] {
-    new (self) flight::Airspace({std::move(all), std::move(sides), std::move(points)}, within, limits, radius);
+    new (self) flight::Airspace({std::move(all), std::move(sides), std::move(points), std::move(moving)}, within,
+                                limits, radius);
   });
+}
+
+/// The same airspace with its movers, in their order, at other positions and with other velocities.
+flight::Airspace* airspace_moved(const flight::Airspace& airspace, nb::handle positions, nb::handle velocities) {
+  const std::span<const std::uint32_t> movers = airspace.bodies().movers();
+  const FloatRows at = float_rows(positions, "positions", 3), to = float_rows(velocities, "velocities", 3);
+  at.of_shape({movers.size(), 3}), to.of_shape({movers.size(), 3});
+  require_within(at.span(), -FARTHEST, FARTHEST, "positions");
+  require_within(to.span(), -FARTHEST, FARTHEST, "velocities");
+  return without_gil([&] {
+    flight::Bodies bodies = airspace.bodies();
+    for (std::size_t i = 0; i < movers.size(); i++) {
+      bodies.move(movers[i], vector_of(at.matrix()[i]), vector_of(to.matrix()[i]));
+    }
+    return new flight::Airspace(airspace, std::move(bodies));
+  });
+}
+
+std::vector<flight::State> flight_of(nb::handle given) {
+  const FlightStates rows(given, "path");
+  require(rows.count() >= 2, "a path must have two states or more");
+  std::vector<flight::State> states;
+  for (std::size_t i = 0; i < rows.count(); i++) states.push_back(rows[i]);
+  return states;
+}
+
+nb::object flight_rows(const std::vector<flight::State>& states) {
+  OwnMatrix<double> rows(0, 6);
+  for (const flight::State& state : states) append_state(rows, state);
+  return as_rows(std::move(rows));
+}
+
+/// What remains of a flight; no rows if it is not proved.
+nb::object flight_followed(const flight::Airspace& airspace, nb::handle path, double elapsed, nb::handle here) {
+  const std::vector<flight::State> states = flight_of(path);
+  const flight::State from = state_of(here, "here");
+  return flight_rows(without_gil([&] { return flight::follow(airspace, states, elapsed, from); }));
+}
+
+nb::object flight_stopped(const flight::Airspace& airspace, nb::handle here) {
+  const flight::State from = state_of(here, "here");
+  return flight_rows({from, flight::stop_of(from, airspace.limits())});
+}
+
+double flight_free_until(const flight::Airspace& airspace, nb::handle path, double horizon) {
+  const std::vector<flight::State> states = flight_of(path);
+  require(horizon >= 0.0 && horizon <= FARTHEST, "horizon must be from 0 to 1e9");
+  return without_gil([&] { return flight::free_until(airspace, states, horizon); });
+}
+
+nb::object flight_free(const flight::Airspace& airspace, nb::handle path) {
+  const std::vector<flight::State> states = flight_of(path);
+  std::vector<std::uint8_t> free = without_gil([&] { return flight::free_motions(airspace, states); });
+  const std::size_t count = free.size();
+  return as_bools(std::move(free), {count});
 }
 
 nb::object states_free(const flight::Airspace& airspace, nb::handle q) {
@@ -195,15 +260,9 @@ bool search_flight(flight::FlightQuery& query, std::int64_t rounds) {
   return without_gil([&] { return query.search(rounds); });
 }
 
-nb::object as_state_rows(const flight::FlightPath& path) {
-  OwnMatrix<double> rows(0, 6);
-  for (const flight::State& state : path.states) append_state(rows, state);
-  return as_rows(std::move(rows));
-}
-
-nb::object shortened(flight::FlightQuery& query, std::int64_t tries) {
+nb::object flight_shortened(flight::FlightQuery& query, std::int64_t tries) {
   require_budget(tries, "tries");
-  return as_state_rows(without_gil([&] { return query.shorten(tries); }));
+  return flight_rows(without_gil([&] { return query.shorten(tries).states; }));
 }
 
 }  // namespace
@@ -219,17 +278,22 @@ void add_flight(nb::module_& module) {
       .def_ro("distance", &flight::Bodies::Nearest::distance)
       .def_ro("body", &flight::Bodies::Nearest::body);
   nb::class_<flight::Airspace>(part, "Airspace", "Where a ball may fly.")
-      .def("__init__", &make_airspace, "solids"_a.none(), "triangles"_a.none(), "balls"_a.none(), "bounds"_a.none(),
-           "limits"_a, "radius"_a)
+      .def("__init__", &make_airspace, "solids"_a.none(), "triangles"_a.none(), "balls"_a.none(), "movers"_a.none(),
+           "bounds"_a.none(), "limits"_a, "radius"_a)
       .def("states_free", &states_free, "q"_a.none())
       .def("motions_free", &flights_free, "a"_a.none(), "b"_a.none())
+      .def("with_moved", &airspace_moved, "positions"_a.none(), "velocities"_a.none(), nb::rv_policy::take_ownership)
+      .def("follow", &flight_followed, "path"_a.none(), "elapsed"_a, "here"_a.none())
+      .def("stop", &flight_stopped, "here"_a.none())
+      .def("free_until", &flight_free_until, "path"_a.none(), "horizon"_a)
+      .def("path_free", &flight_free, "path"_a.none())
       .def("nearest", &nearest_body, "at"_a.none(), "most"_a);
   nb::class_<flight::FlightQuery>(part, "FlightQuery", "A search for a path between two free states.")
       .def("__init__", &make_flight_query, "airspace"_a, "start"_a.none(), "goal"_a.none(), "variant"_a,
            nb::keep_alive<1, 2>())
       .def("search", &search_flight, "rounds"_a)
-      .def("shorten", &shortened, "tries"_a)
-      .def_prop_ro("path", [](const flight::FlightQuery& query) { return as_state_rows(query.raw()); })
+      .def("shorten", &flight_shortened, "tries"_a)
+      .def_prop_ro("path", [](const flight::FlightQuery& query) { return flight_rows(query.found().states); })
       .def_prop_ro("nodes", &flight::FlightQuery::nodes)
       .def_prop_ro("motions", &flight::FlightQuery::motions)
       .def_prop_ro("shortcuts", &flight::FlightQuery::shortcuts);

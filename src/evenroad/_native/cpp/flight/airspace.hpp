@@ -30,6 +30,9 @@ class Airspace {
     rounding_ = ABSOLUTE + RELATIVE * farthest;
   }
 
+  Airspace(const Airspace& other, Bodies bodies)
+      : Airspace(std::move(bodies), other.bounds_, other.limits_, other.radius_) {}
+
   const Bodies& bodies() const { return bodies_; }
   const Bounds& bounds() const { return bounds_; }
   const Limits& limits() const { return limits_; }
@@ -60,6 +63,17 @@ class Airspace {
       time += piece.duration;
     }
     return true;
+  }
+  /// Return the straight flight between two positions at a pace.
+  static Parabola line(const Vector& from, const Vector& to, double pace) {
+    const double time = std::max(norm(to - from) / pace, 1e-9);
+    return {from, (to - from) * (1.0 / time), {}, time};
+  }
+  /// Say whether a straight flight that begins at a time is proved free.
+  bool is_free(const Parabola& line, double time) const { return bodies_.is_free(line, time, grown()); }
+  /// See `Bodies::first_contact`.
+  std::optional<double> first_contact(const Parabola& line, double time) const {
+    return bodies_.first_contact(line, time, grown());
   }
   /// Return the least time from one state to another, if it is below `most` and the motion is proved free.
   std::optional<double> time_between(const State& from, const State& to, double begin,

@@ -11,11 +11,13 @@ namespace evenroad::flight {
 
 namespace {
 
-constexpr std::uint32_t PER_LEAF = 4;
+constexpr std::uint32_t PER_LEAF = 2;
 /// A curve is halved before the tree is searched until it keeps this near to its chord, as a share of the radius.
 constexpr double NEAR_CHORD = 1.0;
 /// Number of halvings after which a curve is as short as its tolerance, with much to spare.
 constexpr std::size_t DEEPEST = 64;
+/// Number of times that an interval around the nearest point of a segment becomes shorter by a third.
+constexpr int THIRDS = 12;
 
 /// Return the point of a box or a cylinder that is nearest to a point.
 Vector nearest_on(const robot::Exact& o, const Vector& at) {
@@ -63,23 +65,44 @@ Vector nearest_on(const Triangle& triangle, const Vector& at) {
   return best;
 }
 
-bool overlaps(double from, double to, double low, double high, double& enter, double& leave) {
-  const double along = to - from;
-  if (along == 0.0) return low <= from && from <= high;
-  double first = (low - from) / along, last = (high - from) / along;
-  if (first > last) std::swap(first, last);
-  enter = std::max(enter, first), leave = std::min(leave, last);
-  return enter <= leave;
-}
+/// A segment that is tested against many boxes.
+class Segment {
+ public:
+  Segment(const Vector& from, const Vector& to) : from_(from) {
+    for (std::size_t k = 0; k < 3; k++) inverse_[k] = 1.0 / (to[k] - from[k]);
+  }
+
+  /// Say whether it meets a box that is larger by half extents.
+  bool meets(const Vector& low, const Vector& high, const Vector& width) const {
+    double enter = 0.0, leave = 1.0;
+    for (std::size_t k = 0; k < 3; k++) {
+      const double below = low[k] - width[k] - from_[k], above = high[k] + width[k] - from_[k];
+      if (std::isinf(inverse_[k])) {
+        if (below > 0.0 || above < 0.0) return false;
+        continue;
+      }
+      const double first = below * inverse_[k], last = above * inverse_[k];
+      enter = std::max(enter, std::min(first, last)), leave = std::min(leave, std::max(first, last));
+    }
+    return enter <= leave;
+  }
+
+ private:
+  Vector from_, inverse_;
+};
 
 }  // namespace
 
-Bodies::Bodies(std::vector<Solid> solids, std::vector<Triangle> triangles, std::vector<Ball> balls)
-    : solids_(std::move(solids)), triangles_(std::move(triangles)), balls_(std::move(balls)) {
-  const auto all = static_cast<std::uint32_t>(count());
-  for (std::uint32_t body = 0; body < all; body++) {
-    const bool is_moving = body < solids_.size() && squared_length(solids_[body].velocity) > 0.0;
-    (is_moving ? movers_ : order_).push_back(body);
+Bodies::Bodies(std::vector<Solid> solids, std::vector<Triangle> triangles, std::vector<Ball> balls,
+               std::vector<std::uint32_t> movers)
+    : solids_(std::move(solids)),
+      movers_(std::move(movers)),
+      triangles_(std::move(triangles)),
+      balls_(std::move(balls)) {
+  std::vector<bool> is_moving(count(), false);
+  for (const std::uint32_t mover : movers_) is_moving[mover] = true;
+  for (std::uint32_t body = 0; body < count(); body++) {
+    if (!is_moving[body]) order_.push_back(body);
   }
   if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
 }
@@ -145,15 +168,12 @@ Bodies::Near Bodies::near_to(std::uint32_t body, const Vector& at) const {
 template <class Visit>
 bool Bodies::visit(const Vector& from, const Vector& to, const Vector& width, const Visit& visit) const {
   if (nodes_.empty()) return true;
-  std::array<std::uint32_t, DEEPEST> waiting{0};
+  const Segment segment(from, to);
+  std::array<std::uint32_t, DEEPEST> waiting;
+  waiting[0] = 0;
   for (std::size_t left = 1; left > 0;) {
     const Node& node = nodes_[waiting[--left]];
-    double enter = 0.0, leave = 1.0;
-    bool is_near = true;
-    for (std::size_t k = 0; k < 3 && is_near; k++) {
-      is_near = overlaps(from[k], to[k], node.low[k] - width[k], node.high[k] + width[k], enter, leave);
-    }
-    if (!is_near) continue;
+    if (!segment.meets(node.low, node.high, width)) continue;
     if (node.count == 0) {
       waiting[left++] = node.second, waiting[left++] = static_cast<std::uint32_t>(&node - nodes_.data()) + 1;
       continue;
@@ -176,12 +196,8 @@ bool Bodies::is_free(const Parabola& curve, double time, double radius) const {
     return is_free({curve.position, curve.velocity, curve.acceleration, half}, time, radius) &&
            is_free({curve.at(half), curve.velocity_at(half), curve.acceleration, half}, time + half, radius);
   }
-  for (const std::uint32_t body : movers_) {
-    const Vector& velocity = solids_[body].velocity;
-    // As it looks from the body, whose place is that of time 0.
-    if (!clears(body, {curve.position - velocity * time, curve.velocity - velocity, curve.acceleration, h}, radius)) {
-      return false;
-    }
+  for (const std::uint32_t mover : movers_) {
+    if (!clears(mover, seen_from(mover, curve, time), radius)) return false;
   }
   Vector width;
   for (std::size_t k = 0; k < 3; k++) width[k] = radius + std::abs(curve.acceleration[k]) * h * h * 0.125;
@@ -192,7 +208,8 @@ bool Bodies::clears(std::uint32_t body, const Parabola& curve, double radius) co
   struct Interval {
     double from, to;
   };
-  std::array<Interval, DEEPEST> waiting{Interval{0.0, curve.duration}};
+  std::array<Interval, DEEPEST> waiting;
+  waiting[0] = {0.0, curve.duration};
   ClockWatch clock(1024);
   for (std::size_t left = 1; left > 0;) {
     const auto [from, to] = waiting[--left];
@@ -216,6 +233,45 @@ bool Bodies::clears(std::uint32_t body, const Parabola& curve, double radius) co
     waiting[left++] = {middle, to}, waiting[left++] = {from, middle};
   }
   return true;
+}
+
+/// A curve as it looks from a body that moves, which is where it is at time 0.
+Parabola Bodies::seen_from(std::uint32_t mover, const Parabola& curve, double time) const {
+  const Vector& velocity = solids_[mover].velocity;
+  return {curve.position - velocity * time, curve.velocity - velocity, curve.acceleration, curve.duration};
+}
+
+std::optional<double> Bodies::first_contact(const Parabola& line, double time, double radius) const {
+  constexpr double none = 2.0;
+  double first = none;
+  const auto look = [&](std::uint32_t body, const Parabola& seen) {
+    if (!clears(body, seen, radius)) {
+      first = std::min(first, nearest_share(body, seen.position, seen.at(seen.duration)));
+    }
+    return true;
+  };
+  for (const std::uint32_t mover : movers_) look(mover, seen_from(mover, line, time));
+  visit(line.position, line.at(line.duration), {radius, radius, radius},
+        [&](std::uint32_t body) { return look(body, line); });
+  return first == none ? std::nullopt : std::optional(first);
+}
+
+/// The distance of a convex body is convex along a segment.
+double Bodies::nearest_share(std::uint32_t body, const Vector& from, const Vector& to) const {
+  const auto squared = [&](double share) {
+    const Vector at = from + (to - from) * share;
+    return squared_length(at - near_to(body, at).point);
+  };
+  double low = 0.0, high = 1.0;
+  for (int step = 0; step < THIRDS; step++) {
+    const double third = (high - low) / 3.0;
+    if (squared(low + third) <= squared(high - third)) {
+      high -= third;
+    } else {
+      low += third;
+    }
+  }
+  return 0.5 * (low + high);
 }
 
 Bodies::Nearest Bodies::nearest(const Vector& at, double time, double most) const {

@@ -5,7 +5,10 @@
 // is known.  Where the plane does not do, the curve is halved.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "flight/motion.hpp"
@@ -36,18 +39,30 @@ constexpr double TOLERANCE = 1e-3;
 
 class Bodies {
  public:
-  Bodies(std::vector<Solid> solids, std::vector<Triangle> triangles, std::vector<Ball> balls);
+  /// The solids of some numbers may move: they are tested one by one, and not through the tree.
+  Bodies(std::vector<Solid> solids, std::vector<Triangle> triangles, std::vector<Ball> balls,
+         std::vector<std::uint32_t> movers);
+
+  /// Let a solid that may move be at a position at time 0, with a velocity.
+  void move(std::uint32_t mover, const Vector& centre, const Vector& velocity) {
+    std::copy(centre.begin(), centre.end(), solids_[mover].shape.centre);
+    solids_[mover].velocity = velocity;
+  }
 
   /// Say whether a ball is free at a time.
   bool is_free(const Vector& at, double time, double radius) const;
   /// Say whether a ball is proved free along a parabola that begins at a time.
   bool is_free(const Parabola& curve, double time, double radius) const;
+  /// Return the share of a straight flight, which begins at a time, that is nearest to the first body that a ball
+  /// touches; none if none is touched.
+  std::optional<double> first_contact(const Parabola& line, double time, double radius) const;
   /// Return the distance of a point from the nearest body at a time, at most `most`, and the number of the body.
   struct Nearest {
     double distance;
     std::int64_t body;
   };
   Nearest nearest(const Vector& at, double time, double most) const;
+  std::span<const std::uint32_t> movers() const { return movers_; }
   std::size_t count() const { return solids_.size() + triangles_.size() + balls_.size(); }
 
  private:
@@ -65,6 +80,8 @@ class Bodies {
   Near near_to(std::uint32_t body, const Vector& at) const;
   void write_box(std::uint32_t body, Vector& low, Vector& high) const;
   std::uint32_t build(std::uint32_t first, std::uint32_t end);
+  Parabola seen_from(std::uint32_t mover, const Parabola& curve, double time) const;
+  double nearest_share(std::uint32_t body, const Vector& from, const Vector& to) const;
   bool clears(std::uint32_t body, const Parabola& curve, double radius) const;
   /// Call `visit(body)` for each body whose box a segment, widened by half extents, touches, until one returns false.
   template <class Visit>
