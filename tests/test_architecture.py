@@ -49,7 +49,7 @@ MAY_IMPORT = {
     "testing": BASE | {"space", "world"},
     "viz": BASE
     | {*VALUES, *OF_ARMS, "driving", "flight", "constraints", "roadmap", "planning", "trajectory", "task", "_load"},
-    "adapters": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
+    "adapters": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory", "task"},
     "ros2": BASE | {*VALUES, *OF_ARMS, "driving", "planning", "trajectory"},
     "cli": BASE
     | {*VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory", "task", "datasets", "io", "viz"}

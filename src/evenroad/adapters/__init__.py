@@ -5,8 +5,10 @@ from __future__ import annotations
 from importlib import import_module
 from types import ModuleType
 
+KNOWN = ("klampt", "mplib", "mujoco", "ompl", "simulated")
+
 
 def __getattr__(name: str) -> ModuleType:
-    if name not in ("klampt", "mujoco", "ompl"):
-        raise AttributeError(f"module 'evenroad.adapters' has no attribute {name!r}; there are klampt, mujoco and ompl")
+    if name not in KNOWN:
+        raise AttributeError(f"module 'evenroad.adapters' has no attribute {name!r}; there are {', '.join(KNOWN)}")
     return import_module(f"evenroad.adapters.{name}")

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicHermiteSpline
 
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
@@ -162,9 +161,21 @@ class Trajectory(Rows, metaclass=KnowsElsewhere):
             raise InvalidValue(f"t must be from 0 to {self.duration:.9g} s, got {shown(t)}")
         if len(self.times) == 1:
             return np.broadcast_to(self.positions[0], (*times.shape, len(self.names))).copy()
-        return np.asarray(CubicHermiteSpline(self.times, self.positions, self.velocities)(times))
+        return self._between(times)
 
     __call__ = at
+
+    def _between(self, times: Floats) -> Floats:
+        """Return the cubics between the states around each time: those of SciPy's CubicHermiteSpline, of few states."""
+        before = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)
+        after = before + 1
+        lasts = (self.times[after] - self.times[before])[..., np.newaxis]
+        since = (times - self.times[before])[..., np.newaxis]
+        slope = (self.positions[after] - self.positions[before]) / lasts
+        bend = (self.velocities[before] + self.velocities[after] - 2 * slope) / lasts
+        square, cube = (slope - self.velocities[before]) / lasts - bend, bend / lasts
+        linear = self.positions[before] + self.velocities[before] * since
+        return np.asarray(linear + square * (since * since) + cube * (since * since * since))
 
     def sample(self, dt: float) -> Floats:
         """Return positions at times 0, dt, 2 dt, ... and at the end.
