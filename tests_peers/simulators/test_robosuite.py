@@ -19,9 +19,12 @@ robosuite = pytest.importorskip("robosuite", reason="robosuite is not installed:
 
 SEEDS = int(os.environ.get("EVENROAD_SEEDS", "5"))
 FINGERS = ("panda_leftfinger", "panda_rightfinger")
+FINGER_JOINTS = ("gripper0_right_finger_joint1", "gripper0_right_finger_joint2")
 TIP = "panda_hand"
 PALM_TO_TIPS = 0.0984
 """Distance of the middle of a grasped cube from the frame of the hand, along the hand [m]."""
+ABOVE_MIDDLE = 0.02
+"""How far above a can's middle it is held, so that the palm stays above the walls of its bin [m]."""
 JOINT_POSITION = {
     **{"type": "JOINT_POSITION", "input_type": "absolute", "input_max": 1, "input_min": -1},
     **{"output_max": 0.05, "output_min": -0.05, "kp": 150, "damping_ratio": 1, "impedance_mode": "fixed"},
@@ -30,16 +33,21 @@ JOINT_POSITION = {
 }
 
 
-@pytest.fixture(scope="module")
-def env():
+def _made(task):
+    """Return an environment whose Panda follows joint targets."""
     from robosuite.controllers import load_composite_controller_config
 
     controllers = load_composite_controller_config(controller="BASIC")
     controllers["body_parts"] = {"right": JOINT_POSITION}
     screens = dict.fromkeys(("has_renderer", "has_offscreen_renderer", "use_camera_obs", "hard_reset"), False)
-    env = robosuite.make(
-        "Lift", robots="Panda", controller_configs=controllers, control_freq=20, ignore_done=True, **screens
+    return robosuite.make(
+        task, robots="Panda", controller_configs=controllers, control_freq=20, ignore_done=True, **screens
     )
+
+
+@pytest.fixture(scope="module")
+def env():
+    env = _made("Lift")
     yield env
     env.close()
 
@@ -139,3 +147,73 @@ def test_a_cube_is_lifted_and_only_the_fingers_touch_it(env, panda, seed):
     assert env._check_success()
     assert [pair for pair in touched if "cube_main" not in pair] == []
     assert all("finger" in "".join(pair) for pair in touched)
+
+
+@pytest.fixture(scope="module")
+def bins():
+    env = _made("PickPlaceCan")
+    yield env
+    env.close()
+
+
+def _among_bins(env, panda, root, *things):
+    """The world of both bins, as their shapes stand in MuJoCo's model."""
+    model, data = env.sim.model, env.sim.data
+    boxes = []
+    for geom in range(model.ngeom):
+        if model.body_id2name(model.geom_bodyid[geom]) in ("bin1", "bin2") and model.geom_contype[geom]:
+            place = root @ er.Pose(tuple(data.geom_xpos[geom]), tuple(data.geom_xmat[geom]))
+            boxes.append(er.Box(tuple(2.0 * model.geom_size[geom]), pose=place, name=f"bin{len(boxes)}"))
+    return er.ArmWorld(panda, er.Scene([*boxes, *things]))
+
+
+def _from_above(x, y, z, yaws):
+    """Poses of the hand that hold a can upright at a place; at yaw 0 the fingers stand apart along y."""
+    poses = (er.Pose((x, y, z + ABOVE_MIDDLE + PALM_TO_TIPS), rpy=(np.pi, 0.0, yaw)) for yaw in yaws)
+    return [er.PoseGoal(pose, tip=TIP) for pose in poses]
+
+
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_a_can_is_placed_in_its_bin_and_only_the_fingers_touch_it(bins, panda, seed):
+    seen = _reset(bins, seed)
+    arm = arm_of(bins)
+    root = arm.base().inverse()
+    can = root @ er.Pose(tuple(seen["Can_pos"]))
+    place = root @ er.Pose(tuple(np.add(bins.target_bin_placements[bins.object_id], (-0.03, -0.08, 0.065))))
+    world = _among_bins(bins, panda, root, er.Cylinder(0.0255, 0.082, xyz=can.xyz, name="can"))
+    grasp = Attach("can", link=TIP, touches=FINGERS)
+    reached = Task([MoveTo(_from_above(*can.xyz, np.pi / 4.0 * np.arange(8)), approach=0.1), grasp]).plan(
+        world, start_of(arm, world), seconds=10
+    )
+    assert reached.solved, reached.message
+    touched = set()
+    trajectory = reached.trajectory(speed=0.3)
+    _driven(bins, arm, trajectory, -1.0, touched)
+    last = trajectory.positions[-1]
+    for _ in range(10):
+        arm.step(np.append(last, 1.0))
+    # Fingers stand at the can, and across the compartment's longer side, so that they fit into it.
+    across = (0.5 * np.pi, -0.5 * np.pi)
+    holding = with_group(panda, panda.group, {**panda.held, "panda_finger_joint1": 0.026})
+    world = _among_bins(bins, holding, root, er.Cylinder(0.0255, 0.082, xyz=can.xyz, name="can"))
+    moved = Task([grasp, MoveTo(_from_above(*place.xyz, across), retreat=0.1, approach=0.1)]).plan(
+        world, last, seconds=10
+    )
+    assert moved.solved, moved.message
+    trajectory = moved.trajectory(speed=0.3)
+    _driven(bins, arm, trajectory, 1.0, touched)
+    last = trajectory.positions[-1]
+    # Open by a little: beside the wall there is no room for more.
+    for opening in [-1.0] * 8 + [0.0] * 5:
+        arm.step(np.append(last, opening))
+    opened = float(
+        np.abs(bins.sim.data.qpos[[bins.sim.model.get_joint_qpos_addr(name) for name in FINGER_JOINTS]]).max()
+    )
+    leaving = with_group(panda, panda.group, {**panda.held, "panda_finger_joint1": min(opened + 1e-3, 0.04)})
+    hand = panda.fk(last, TIP)
+    up = er.PoseGoal(er.Pose(tuple(np.add(hand.xyz, (0.0, 0.0, 0.15))), hand.rotation), tip=TIP)
+    left = Task([MoveTo(up, retreat=0.12)]).plan(_among_bins(bins, leaving, root), last, seconds=10)
+    assert left.solved, left.message
+    _driven(bins, arm, left.trajectory(speed=0.3), 0.0, touched)
+    assert bins._check_success()
+    assert all("finger" in "".join(pair) and "Can_main" in pair for pair in touched), touched
