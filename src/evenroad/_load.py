@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from evenroad.points.pointset import PointSet
     from evenroad.roadmap.roadmap import Roadmap
     from evenroad.scenes.scene import Scene
+    from evenroad.task.result import TaskResult
     from evenroad.trajectory.formats import Saved
     from evenroad.world.gridmap import GridMap
 
@@ -26,27 +27,27 @@ _MAPS = (".yaml", ".yml", ".png", ".pgm", ".bmp", ".map")
 
 
 @explains_calls
-def load(path: str | os.PathLike[str]) -> PlanResult | Saved | Scene | GridMap | PolygonMap | Roadmap | PointSet:
-    """Return what a file holds: a plan, a trajectory, a scene, a map, a roadmap or points.
+def load(
+    path: str | os.PathLike[str],
+) -> PlanResult | TaskResult | Saved | Scene | GridMap | PolygonMap | Roadmap | PointSet:
+    """Return what a file holds: a plan, a task's answer, a trajectory, a scene, a map, a roadmap or points.
 
     Robots are not among these, as a URDF may also be a scene: `load_robot` reads them.
 
     Parameters
     ----------
     path : str or path-like
-        A ``.json`` of a result or a trajectory, also of ``evenroad plan``; a ``.roadmap``; points in ``.npy``, ``.npz``
-        or ``.csv``; a scene or a map, or the name of a shipped one; polygons in ``.geojson``.
+        A ``.json`` of a result, a task or a trajectory, also of ``evenroad plan``; a ``.roadmap``; points in ``.npy``,
+        ``.npz`` or ``.csv``; a scene or a map, or the name of a shipped one; polygons in ``.geojson``.
 
     Returns
     -------
-    PlanResult, Trajectory, CarTrajectory, Scene, GridMap, PolygonMap, Roadmap or PointSet
+    PlanResult, TaskResult, Trajectory, CarTrajectory, Scene, GridMap, PolygonMap, Roadmap or PointSet
 
     Raises
     ------
     UnknownName
         For another suffix.
-    InvalidValue
-        For the answer to a task.
     BrokenFile
         If the file is missing or damaged.
 
@@ -81,14 +82,16 @@ def load(path: str | os.PathLike[str]) -> PlanResult | Saved | Scene | GridMap |
     raise UnknownName.among("kind of file", suffix, (".json", ".roadmap", _POLYGONS, *_POINTS, *_SCENES, *_MAPS))
 
 
-def _of_json(path: str | os.PathLike[str]) -> PlanResult | Saved:
+def _of_json(path: str | os.PathLike[str]) -> PlanResult | TaskResult | Saved:
     record = read_json_file(path, "plan or trajectory")
     if isinstance(record, dict) and "query" in record:
         from evenroad.io import plan_of
 
         return plan_of(record, path)[0]
     if isinstance(record, dict) and str(record.get("format")).startswith("evenroad.task "):
-        raise InvalidValue(f"{path} is the answer to a task, which is not read back: `evenroad view` draws it")
+        from evenroad.task.save import task_result_of
+
+        return task_result_of(record, path)
     if isinstance(record, dict) and "format" in record:
         from evenroad.trajectory.formats import saved_of
 

@@ -8,10 +8,9 @@ import pytest
 import evenroad as er
 from evenroad._seal import with_digest
 from evenroad.cli import main
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, UnknownName
 from evenroad.saved.world_value import value_of, world_of
 from evenroad.task import MoveTo, Task
-from evenroad.task.save import load_parts
 
 CELLS = np.zeros((40, 60), dtype=bool)
 CELLS[:25, 30:34] = True
@@ -129,8 +128,8 @@ def test_a_task_is_saved_drawn_and_viewed(tmp_path, monkeypatch):
         done.save(name)
     rows = np.loadtxt("task.csv", delimiter=",", skiprows=1)
     np.testing.assert_array_equal(rows, done.path)
-    parts = load_parts(tmp_path / "task.json")
-    assert [each.cost for each in parts] == [each.cost for each in done.parts]
+    loaded = er.load(tmp_path / "task.json")
+    assert [each.cost for each in loaded.parts] == [each.cost for each in done.parts]
     assert main(["view", "task.json", "--png", "viewed.png"]) == 0
     assert (tmp_path / "viewed.png").read_bytes() == (tmp_path / "task.png").read_bytes()
 
@@ -150,7 +149,7 @@ def test_a_file_is_loaded_by_what_it_holds(tmp_path):
     with pytest.raises(UnknownName, match=r"unknown kind of file '\.txt'"):
         er.load(tmp_path / "notes.txt")
     (tmp_path / "task.json").write_text(json.dumps(with_digest({"format": "evenroad.task 1"})))
-    with pytest.raises(InvalidValue, match=r"task\.json is the answer to a task"):
+    with pytest.raises(BrokenFile, match=r"task\.json is not a task: its 'format' must be 'evenroad.task 2'"):
         er.load(tmp_path / "task.json")
     (tmp_path / "other.json").write_text(json.dumps(with_digest({"a": 1})))
     with pytest.raises(BrokenFile, match="neither a plan nor a trajectory"):

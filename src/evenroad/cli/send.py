@@ -10,7 +10,7 @@ from evenroad._files import read_json_file
 from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
-from evenroad.cli.sent import sent_plan, sent_trajectory
+from evenroad.cli.sent import sent_plan, sent_task, sent_trajectory
 from evenroad.errors import InvalidValue
 from evenroad.trajectory import Trajectory
 from evenroad.trajectory.send import checked_states, send_trajectory
@@ -31,7 +31,7 @@ class Send(RobotOptions):
     """
 
     plan: Positional[Path]
-    """A plan of evenroad plan --robot, or a trajectory of its --trajectory (.json).
+    """A plan of evenroad plan --robot, a trajectory of its --trajectory, or the saved answer to a task (.json).
     A plan without times, or too fast, is timed for --fastest."""
     robot: str | None = None
     """With a trajectory that does not say where it was planned: a URDF, xacro or MJCF file, or a name.  Goes with
@@ -93,6 +93,10 @@ class Send(RobotOptions):
             if self.robot is not None or self.scene is not None:
                 raise InvalidValue("--robot and --scene go with a trajectory; a plan names its own")
             return sent_plan(record, self.plan, self.fastest)
+        if isinstance(record, dict) and str(record.get("format")).startswith("evenroad.task "):
+            if self.robot is not None or self.scene is not None:
+                raise InvalidValue("--robot and --scene go with a trajectory; the answer to a task has its own")
+            return sent_task(record, self.plan, self.fastest)
         if (self.robot is None) != (self.scene is None):
             raise InvalidValue("--robot and --scene go together")
         given = None if self.robot is None or self.scene is None else (self.robot, self.scene, self.options())

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
@@ -13,12 +15,14 @@ from evenroad._seal import has_digest
 from evenroad.cli.plan_file import PlanFile, changed_since, constraints_in, plan_file_of, problem_of
 from evenroad.cli.run import run_task_of
 from evenroad.cli.trajectory import require_meshes_free
+from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.differential_drive import DifferentialDrive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.planning.problem import Problem
 from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.poses.constraint import Constraint, part_of
+from evenroad.task.save import task_result_of
 from evenroad.trajectory import Trajectory, arm_trajectory, controller_joints, limits_of, proved_in
 from evenroad.trajectory.formats import saved_of
 from evenroad.trajectory.make import DEVIATION
@@ -50,6 +54,29 @@ def sent_plan(record: Json, file: Path, fastest: float) -> tuple[Trajectory, str
     return proved, "of the plan" if is_kept else f"made for at most {fastest:g} rad/s"
 
 
+def sent_task(record: Json, file: Path, fastest: float) -> tuple[Trajectory, str]:
+    """Return the trajectory of a task's answer at most `fastest` [rad/s], each motion proved in its own world.
+
+    Raises as :func:`sent_plan`; InvalidValue if a motion does not begin where the last one ended.
+    """
+    done, whole = task_result_of(record, file), has_digest(record, file)
+    arm = [part for motion in done.motions if not motion.fingers for part in motion.parts]
+    if not done.solved or not arm:
+        raise NotAvailable(f"{file} holds no path: {done.message}")
+    for before, after in pairwise(arm):
+        if before.path is None or after.path is None or np.abs(before.path[-1] - after.path[0]).max() > _SAME:
+            raise InvalidValue(f"the motions of {file} do not begin where those before them end: plan again")
+    limits = limits_of(cast(ArmWorld, arm[0].world).robot)
+    slow = tuple(min(each, 0.999 * fastest) for each in limits.velocity)
+    made = done.trajectory(limits=replace(limits, velocity=slow))
+    if not whole:
+        _say_unsealed(file)
+    if done.fingers:
+        _say_alone(done.fingers)
+        made = replace(made.only([name for name in made.names if name not in done.fingers]), proof=made.proof)
+    return made, f"made for at most {fastest:g} rad/s"
+
+
 def sent_trajectory(record: Json, file: Path, given: Given | None) -> Trajectory:
     """Return the trajectory of a record, proved where the file says that it was planned, or in what is `given`.
 
@@ -62,6 +89,8 @@ def sent_trajectory(record: Json, file: Path, given: Given | None) -> Trajectory
     if given is None and "task" in trajectory.source:
         return _planned_again(trajectory, file)
     first, last = trajectory.positions[[0, -1]]
+    if trajectory.world is not None and not hasattr(trajectory.world, "robot"):
+        raise NotAvailable(f"{file} is a trajectory on a map; those of arms are sent")
     if given is not None:
         robot, scene, options = given
         options["group"] = options["group"] or ",".join(trajectory.names)
@@ -72,7 +101,8 @@ def sent_trajectory(record: Json, file: Path, given: Given | None) -> Trajectory
     source = trajectory.source.get("plan")
     if not isinstance(source, dict) or not isinstance(source.get("query"), dict):
         raise InvalidValue(
-            f"{file} does not say in which robot and scene it is free: name these with --robot and --scene"
+            f"{file} does not say in which robot and scene it is free: name these with --robot and --scene, or send the"
+            " answer of its task, as TaskResult.save writes it"
         )
     try:
         start, goals = (np.array(source["query"][name], dtype=np.float64) for name in ("start", "goals"))
@@ -115,9 +145,17 @@ def _proved(
     proved = proved_in(trajectory, world, constraints)
     require_meshes_free(problem, proved)
     if not whole:
-        text = "has no digest, or does not say of what it was made: only what is proved anew is known of it"
-        print(f"evenroad: {file} {text}", file=sys.stderr)
+        _say_unsealed(file)
     return proved
+
+
+def _say_unsealed(file: Path) -> None:
+    text = "has no digest, or does not say of what it was made: only what is proved anew is known of it"
+    print(f"evenroad: {file} {text}", file=sys.stderr)
+
+
+def _say_alone(fingers: tuple[str, ...]) -> None:
+    print(f"evenroad: the arm alone is sent: it waits while {', '.join(fingers)} should move", file=sys.stderr)
 
 
 def _made(plan: PlanFile, file: Path, fastest: float) -> Trajectory:
@@ -154,5 +192,5 @@ def _planned_again(trajectory: Trajectory, file: Path) -> Trajectory:
         raise InvalidValue(f"the task of {file} leads to other motions now: give the command that made it again")
     if not done.fingers:
         return again
-    print(f"evenroad: the arm alone is sent: it waits while {', '.join(done.fingers)} should move", file=sys.stderr)
+    _say_alone(done.fingers)
     return replace(again.only([name for name in again.names if name not in done.fingers]), proof=again.proof)

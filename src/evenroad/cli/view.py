@@ -10,11 +10,12 @@ from typing import Annotated
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._files import require_writable_folder
+from evenroad._files import read_json_file, require_writable_folder
 from evenroad._time_limit import within
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.cli.plan_file import PlanFile, read_plan
+from evenroad.cli.run import run_task_of
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.driving.car_world import CarWorld
 from evenroad.errors import InvalidValue, NotAvailable
@@ -27,7 +28,8 @@ from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult
 from evenroad.roadmap import Budget
-from evenroad.task.save import is_task, load_parts
+from evenroad.task.result import TaskResult
+from evenroad.task.save import is_task, load_task_result
 from evenroad.trajectory.car import are_free
 from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.corners import drivable
@@ -77,8 +79,8 @@ class View(RobotOptions):
                 if file.suffix.lower() != suffix:
                     raise InvalidValue(f"{option} must name a {suffix}, got {str(file)!r}")
                 require_writable_folder(file)
-        if is_task(self.world):
-            return self._show_task()
+        if (done := self._task()) is not None:
+            return self._show_task(done)
         plan = self.plan_file()
         if plan.changed:
             print(f"evenroad: the {' and '.join(plan.changed)} changed since this was planned", file=sys.stderr)
@@ -100,14 +102,21 @@ class View(RobotOptions):
                 open_browser(page.resolve().as_uri())
         return 0
 
-    def _show_task(self) -> int:
-        """Draw the motions of a task's answer; return 0."""
-        from evenroad.viz.result import plot_parts
+    def _task(self) -> TaskResult | None:
+        """Return the answer to a task that is shown: a saved one, or that of a trajectory of evenroad run."""
+        if self.world.suffix.lower() != ".json" or is_task(self.world):
+            return load_task_result(self.world) if is_task(self.world) else None
+        record = read_json_file(self.world, "plan or trajectory")
+        source = record.get("source") if isinstance(record, dict) else None
+        made_by = source.get("task") if isinstance(source, dict) else None
+        return None if made_by is None else run_task_of(made_by, self.world).planned()
 
+    def _show_task(self, done: TaskResult) -> int:
+        """Draw the motions of a task's answer; return 0."""
         if self.html is not None or self.gif is not None:
             raise NotAvailable("the answer to a task is drawn, with --png; --html and --gif are of one plan")
         file = Path(f"{self.world.stem}.png") if self.png is None else self.png
-        plot_parts(load_parts(self.world), file)
+        done.plot(file)
         print(f"wrote {file}")
         if self.png is None:
             open_browser(file.resolve().as_uri())

@@ -13,7 +13,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
 from evenroad.collision.arm_world import ArmWorld
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.planning.result import PlanResult, Status
 from evenroad.task.joined import joined
 from evenroad.task.motion import Motion
@@ -127,6 +127,8 @@ class TaskResult:
         >>> Task([MoveTo("inside")]).plan(er.ArmWorld("ur5", "box-reach"), "home").plot().mode
         'RGB'
         """
+        if not any(part.cost or not part.solved for part in self.parts):
+            raise NotAvailable(f"there is nothing to draw: {self.message if not self.solved else 'nothing moves'}")
         from evenroad.viz.result import plot_parts
 
         return plot_parts(self.parts, path)
