@@ -31,7 +31,7 @@ from evenroad.roadmap.search import (
     length_along,
     search_problem,
 )
-from evenroad.world import ShowsApart, World
+from evenroad.world import World
 
 if TYPE_CHECKING:
     from evenroad.roadmap.rules import Rule
@@ -202,7 +202,8 @@ class Attempt:
 
     def search_end(self) -> Deadline:
         """Return the deadline of a search. It leaves time for a proof that there is no path, and for the reasons."""
-        is_proof_due = not (self.grows or self.proof_tried) and isinstance(self.world, ShowsApart)
+        # `isinstance` of a protocol would take as long as a short search.
+        is_proof_due = not (self.grows or self.proof_tried) and hasattr(self.world, "apart")
         return self.time.part(self.began, BEFORE_PROOF if is_proof_due else BEFORE_REASONS)
 
     def take(self, motions: int, seconds: float) -> None:

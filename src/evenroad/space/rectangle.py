@@ -20,6 +20,9 @@ _ROUNDING = 1e-9
 """Share of an edge by which a point may be outside. It allows for rounding in a frame far from the origin."""
 
 
+_EUCLIDEAN = FlatMetric(scale=np.ones(2), period=np.full(2, np.inf))
+
+
 @dataclass(frozen=True)
 class Rectangle(Space):
     """The rectangle ``corner + s * edge_u + t * edge_v`` for s, t in [0, 1]; the cube's origin goes to `corner`.
@@ -64,7 +67,7 @@ class Rectangle(Space):
     @property
     def flat(self) -> FlatMetric:
         """The Euclidean metric: scales of 1, nothing wraps."""
-        return FlatMetric(scale=np.ones(2), period=np.full(2, np.inf))
+        return _EUCLIDEAN
 
     @property
     def area(self) -> float:

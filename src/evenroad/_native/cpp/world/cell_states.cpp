@@ -54,15 +54,26 @@ void count_row(const Occupancy& occupancy, const Around& around, std::int64_t ro
   }
 }
 
+/// Number of steps outwards between two looks whether columns farther away still matter.
+constexpr std::int64_t STEPS_A_LOOK = 4;
+
 /// Write the least of (i - j)^2 + heights[j]^2 over the columns j that are at most `reach` from column i, for `count`
 /// columns i; `heights` begin `reach` columns before the first.
 void square_distances(const std::vector<std::int32_t>& heights, std::int64_t reach, std::vector<std::int32_t>& squared,
                       std::int64_t count) {
-  std::fill(squared.begin(), squared.begin() + count, static_cast<std::int32_t>(2 * reach * reach));
-  for (std::int64_t away = -reach; away <= reach; away++) {
-    const std::int32_t* height = heights.data() + reach + away;
+  const std::int32_t* middle = heights.data() + reach;
+  std::copy_n(middle, count, squared.begin());
+  for (std::int64_t away = 1; away <= reach; away++) {
     const auto across = static_cast<std::int32_t>(away * away);
-    for (std::int64_t i = 0; i < count; i++) squared[i] = std::min(squared[i], height[i] + across);
+    if (away % STEPS_A_LOOK == 0) {
+      std::int32_t largest = 0;
+      for (std::int64_t i = 0; i < count; i++) largest = std::max(largest, squared[i]);
+      // Nothing so far away is nearer than what was found.
+      if (across >= largest) break;
+    }
+    for (std::int64_t i = 0; i < count; i++) {
+      squared[i] = std::min(squared[i], std::min(middle[i - away], middle[i + away]) + across);
+    }
   }
 }
 

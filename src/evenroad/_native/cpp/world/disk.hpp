@@ -45,7 +45,7 @@ class Disk {
         radius_(radius),
         reach_(static_cast<std::int64_t>(std::min(std::ceil(radius), 1e9))),
         occupancy_(map),
-        cells_(rows(), columns(), shift()),
+        cells_(rows(), columns(), shift() - 1),
         gates_(rows(), columns(), shift()) {}
 
   const Frame& frame() const { return frame_; }
@@ -85,8 +85,8 @@ class Disk {
   std::int64_t reach() const { return reach_; }
 
  private:
-  /// Return the number of bits of a row or column number within a tile.  Tiles are so large that their surroundings, on
-  /// which they depend, are not much larger.
+  /// Return the number of bits of a row or column number within a tile of gates, so large that the surroundings on
+  /// which it depends are not much larger.  Those of cells are half as wide: a short query then needs fewer cells.
   int shift() const {
     int shift = 7;
     while (shift < 14 && std::int64_t{1} << shift < std::min(2 * reach_, std::max(rows(), columns()))) shift++;
