@@ -36,7 +36,7 @@ MAY_IMPORT = {
     **{part: BASE | {*VALUES, *OF_ARMS[:i]} for i, part in enumerate(OF_ARMS)},
     "robot": BASE | {"geometry", *OF_ARMS},
     "constraints": BASE | {*VALUES, *OF_ARMS},
-    "saved": BASE | {"space", "geometry", "world", *OF_ARMS, "driving", "constraints"},
+    "saved": BASE | {"space", "geometry", "world", *OF_ARMS, "driving", "flight", "constraints"},
     "roadmap": BASE | {"points", "space", "world"},
     "planning": BASE | {"saved", *VALUES, *OF_ARMS, "driving", "flight", "constraints", "roadmap"},
     "trajectory": BASE | {"saved", "space", "geometry", "world", "driving", "flight", *OF_ARMS, "constraints"},

@@ -135,6 +135,7 @@ def test_a_copy_gives_the_same_results_and_has_the_same_fingerprint():
         ({"bounds": [(0, 1), (0, 1)]}, "bounds must be three pairs"),
         ({"bounds": [(0, 1), (1, 0), (0, 1)]}, "bounds must be three pairs"),
         ({"scene": 7}, "scene must be a Scene"),
+        ({"velocities": [1, 2]}, "velocities must be a mapping"),
         ({"jerk": 10.0}, "jerk"),
     ],
 )

@@ -1,5 +1,7 @@
 """Obstacles that move: flights are proved over space and time, and it is known until when they stay free."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -60,6 +62,19 @@ def test_a_world_some_time_later_has_its_obstacles_elsewhere():
     np.testing.assert_array_equal(later.valid(q), fresh.valid(q))
     assert later.velocities["cart 2"] == (0.0, 1.0, 0.0)
     assert later.fingerprint() != world.fingerprint()
+    copy = pickle.loads(pickle.dumps(later))
+    assert copy.fingerprint() == later.fingerprint()
+    np.testing.assert_array_equal(copy.valid(q), later.valid(q))
+
+
+def test_a_saved_plan_is_loaded_with_its_world(tmp_path):
+    world, _, _ = crossing(1)
+    result = er.plan(world.with_moved({"cart 1": (1, 1, 2)}, {}), START, GOAL)
+    result.save(tmp_path / "plan.json")
+    loaded = er.load(tmp_path / "plan.json")
+    assert loaded.world.fingerprint() == result.world.fingerprint()
+    assert loaded.world.validate(loaded.path).all()
+    assert loaded.plot().size[0] > 900
 
 
 def test_what_cannot_move_is_refused():

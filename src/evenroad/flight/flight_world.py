@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,16 @@ HORIZON = 1000.0
 """Default time up to which obstacles keep their velocities [s]."""
 _NEAREST = 1e-2
 """Distance up to which an obstacle is named that is in the way, beyond the radius [m]."""
+
+
+class Movers(NamedTuple):
+    """Positions and velocities of the obstacles that move, (m, 3), and the world's tables with these."""
+
+    at: Floats
+    to: Floats
+    airspace: Airspace
+    bodies: FlightBodies
+    space: FlightSpace
 
 
 @explains_calls
@@ -85,10 +95,14 @@ class FlightWorld(OneOrMany):
     space: FlightSpace = field(init=False, repr=False)
     airspace: Airspace = field(init=False, repr=False)
     """The obstacles and limits, as compiled code has them."""
+    _movers: Movers | None = field(default=None, repr=False, kw_only=True)
     _bodies: FlightBodies = field(init=False, repr=False)
-    _at: Floats = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        if (known := self._movers) is not None:
+            # Of a world that is the same but for what moved.
+            set_fields(self, space=known.space, airspace=known.airspace, _bodies=known.bodies)
+            return
         if self.jerk is not None:
             raise NotAvailable(f"limits of the jerk are not supported yet: leave jerk out, got {shown(self.jerk)}")
         scene = load_scene(self.scene) if isinstance(self.scene, str | os.PathLike) else self.scene
@@ -99,20 +113,28 @@ class FlightWorld(OneOrMany):
         bodies = bodies_of(scene)
         low, high = _default_bounds(bodies.box) if self.bounds is None else _as_bounds(self.bounds)
         space = FlightSpace(low, high, speed, acceleration)
+        if not isinstance(self.velocities, Mapping):
+            raise InvalidValue(f"velocities must be a mapping, obstacle -> velocity, got {shown(self.velocities)}")
         velocities = {name: _as_velocity(name, each) for name, each in self.velocities.items()}
         movers = np.array([_number_of(name, bodies, scene) for name in velocities], dtype=np.int64)
         airspace = Airspace(
             bodies.solids, bodies.triangles, bodies.balls, movers, np.array([low, high]), space.native, radius
         )
-        if velocities:
-            airspace = airspace.with_moved(bodies.solids[movers, 13:16].copy(), np.array([*velocities.values()]))
-        set_fields(self, velocities=velocities, _at=bodies.solids[movers, 13:16].copy())
+        at, to = bodies.solids[movers, 13:16].copy(), np.array([*velocities.values()]).reshape(-1, 3)
+        airspace = airspace.with_moved(at, to)
+        set_fields(self, velocities=velocities, _movers=Movers(at, to, airspace, bodies, space))
         set_fields(self, scene=scene, radius=radius, speed=speed, acceleration=acceleration)
         set_fields(self, bounds=tuple(zip(low, high, strict=True)), space=space, airspace=airspace, _bodies=bodies)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return what a copy is made of, here or in another process: it makes its own tables."""
-        return _world_of, (self.scene, self.radius, self.speed, self.acceleration, self.bounds, self.velocities)
+        made_of = self.scene, self.radius, self.speed, self.acceleration, self.bounds, self.velocities
+        return _world_of, (*made_of, self._moving.at)
+
+    @property
+    def positions(self) -> dict[str, list[float]]:
+        """Positions of the obstacles that move [m]."""
+        return dict(zip(self.velocities, self._moving.at.tolist(), strict=True))
 
     @property
     def proof(self) -> str:
@@ -222,17 +244,20 @@ class FlightWorld(OneOrMany):
         >>> world.with_moved({}, {}, elapsed=9.0).valid((0, 0, 1, 0, 0, 0))
         False
         """
-        known = tuple(self.velocities)
-        to = np.array([*self.velocities.values()]).reshape(-1, 3)
-        at = self._at + elapsed * to
+        known, movers = tuple(self.velocities), self._moving
+        at, to = movers.at + elapsed * movers.to, movers.to.copy()
         for table, given, what in ((at, positions, "position"), (to, velocities, "velocity")):
             for name, value in given.items():
                 require_known("obstacle that moves:", name, known)
                 table[known.index(name)] = as_row(f"the {what} of {name!r}", value, 3, within=FARTHEST)
-        moved = copy(self)
-        set_fields(moved, _at=at, velocities=dict(zip(known, map(tuple, to.tolist()), strict=True)))
-        set_fields(moved, airspace=self.airspace.with_moved(at, to))
-        return moved
+        movers = movers._replace(at=at, to=to, airspace=self.airspace.with_moved(at, to))
+        changed = {name: _as_velocity(name, each) for name, each in velocities.items()}
+        return replace(self, velocities={**self.velocities, **changed}, _movers=movers)
+
+    @property
+    def _moving(self) -> Movers:
+        assert self._movers is not None, "it is set when the world is made"
+        return self._movers
 
     def explain(self, q: Floats) -> str:
         """Return, in words, why a state, (6,), is not free: a limit, or the obstacle that is touched."""
@@ -255,7 +280,7 @@ class FlightWorld(OneOrMany):
         return fingerprint_of(
             *("flight", self.scene.fingerprint(), self.radius, self.speed, self.acceleration, self.bounds),
             self.velocities,
-            self._at,
+            self._moving.at,
         )
 
 
@@ -266,8 +291,10 @@ def _world_of(
     acceleration: Vector,
     bounds: Sequence[Sequence[float]],
     velocities: Mapping[str, Vector],
+    at: Floats,
 ) -> FlightWorld:
-    return FlightWorld(scene, radius, speed=speed, acceleration=acceleration, bounds=bounds, velocities=velocities)
+    world = FlightWorld(scene, radius, speed=speed, acceleration=acceleration, bounds=bounds, velocities=velocities)
+    return world.with_moved(dict(zip(velocities, at.tolist(), strict=True)), {})
 
 
 def _as_velocity(name: str, value: Sequence[float]) -> Vector:

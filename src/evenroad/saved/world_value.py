@@ -29,6 +29,7 @@ from evenroad.world import World
 
 if TYPE_CHECKING:
     from evenroad.driving.polygon_map import PolygonMap
+    from evenroad.flight.flight_world import FlightWorld
     from evenroad.world.gridmap import GridMap, MapFrame
 
 MOST_CELLS = 400_000_000
@@ -45,8 +46,11 @@ def value_of(world: World | None) -> dict[str, Json] | None:
     # Imported late: a plan of an arm has neither constraints nor a map.
     from evenroad.constraints.constrained_world import KeptWorld
     from evenroad.driving.car_world import CarWorld
+    from evenroad.flight.flight_world import FlightWorld
     from evenroad.world.gridmap import DiskWorld
 
+    if isinstance(world, FlightWorld):
+        return _flight_value(world)
     if isinstance(world, KeptWorld):
         inner = value_of(world.world)
         return None if inner is None else {**inner, "keeps": True}
@@ -59,16 +63,29 @@ def value_of(world: World | None) -> dict[str, Json] | None:
     return None
 
 
-def _arm_value(world: ArmWorld) -> dict[str, Json] | None:
+def _scene_value(scene: Scene) -> dict[str, Json] | None:
     try:
-        scene = scene_files(world.scene, "scene")
+        files = scene_files(scene, "scene")
     except NotAvailable:
+        return None
+    return {"text": files.text, "files": files.files, "meshes": _names_of_meshes(scene)}
+
+
+def _flight_value(world: FlightWorld) -> dict[str, Json] | None:
+    scene = _scene_value(world.scene)
+    names = ("radius", "speed", "acceleration", "bounds", "velocities")
+    flight = {name: getattr(world, name) for name in names} | {"positions": world.positions}
+    return None if scene is None else {"flight": flight, "scene": scene}
+
+
+def _arm_value(world: ArmWorld) -> dict[str, Json] | None:
+    if (scene := _scene_value(world.scene)) is None:
         return None
     file = file_of(world.robot)
     return {
         "robot": robot_as_text(world.robot),
         "file": None if file is None else {**asdict(file), "path": str(file.path.absolute())},
-        "scene": {"text": scene.text, "files": scene.files, "meshes": _names_of_meshes(world.scene)},
+        "scene": scene,
         "resolution": world.resolution,
         "clearance": world.clearance,
     }
@@ -80,14 +97,14 @@ def world_of(value: object, where: object) -> World:
         if not isinstance(value, dict):
             raise TypeError("it must be a mapping")
         if "robot" in value:
-            # Imported late: most plans are not read.
-            from tempfile import TemporaryDirectory
+            robot, scene = robot_of_text(value["robot"]), _scene_of(value["scene"])
+            return ArmWorld(robot, scene, value["resolution"], value["clearance"])
+        if "flight" in value:
+            from evenroad.flight.flight_world import FlightWorld
 
-            scene = value["scene"]
-            with TemporaryDirectory() as folder:
-                read = read_scene(scene["text"], scene["files"], Path(folder))
-            named = _with_names(read, scene["meshes"])
-            return ArmWorld(robot_of_text(value["robot"]), named, value["resolution"], value["clearance"])
+            flight = dict(value["flight"])
+            positions, radius = flight.pop("positions"), flight.pop("radius")
+            return FlightWorld(_scene_of(value["scene"]), radius, **flight).with_moved(positions, {})
         from evenroad.driving.car_world import CarWorld
         from evenroad.driving.footprint import Footprint
         from evenroad.world.gridmap import DiskWorld
@@ -100,6 +117,15 @@ def world_of(value: object, where: object) -> World:
         return CarWorld(_map_of(value["map"]), footprint, **car)
     except (EvenroadError, TypeError, ValueError, AttributeError, LookupError, zlib.error) as error:
         raise BrokenFile(f"{where} is damaged: its world cannot be read: {error}") from error
+
+
+def _scene_of(value: Mapping[str, Any]) -> Scene:
+    # Imported late: most plans are not read.
+    from tempfile import TemporaryDirectory
+
+    with TemporaryDirectory() as folder:
+        read = read_scene(value["text"], value["files"], Path(folder))
+    return _with_names(read, value["meshes"])
 
 
 def source_of(source: Mapping[str, Any], world: World | None) -> dict[str, Any]:
