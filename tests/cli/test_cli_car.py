@@ -39,6 +39,23 @@ def test_a_car_is_driven_as_the_options_say(run, more):
 
 
 @pytest.mark.usefixtures("in_an_empty_folder")
+def test_a_goal_region_has_a_radius_and_a_range_of_angles(run):
+    import evenroad as er
+
+    code, _, err = run(*PLAN, "--goal", "8.5", "3", "0", "--goal-radius", "0.3", "--goal-within", "20", "--no-picture")
+    assert (code, err) == (0, "")
+    result, query = er.io.load_plan("office.json")
+    assert (query["goal_radius"], query["goal_within"]) == (0.3, 20.0)
+    x, y, angle = result.path[-1]
+    assert np.hypot(x - 8.5, y - 3.0) <= 0.3
+    assert abs((angle + np.pi) % (2.0 * np.pi) - np.pi) <= np.radians(20.0) + 1e-9
+    code, _, _ = run(*PLAN, "--goal", "8.5", "3", "--goal-radius", "0.3", "--no-picture")
+    assert code == 0
+    code, _, err = run(*PLAN, "--goal", "8.5", "3", "0", "--goal-within", "20", "--no-picture")
+    assert (code, "--goal-within goes with --goal-radius" in err) == (2, True)
+
+
+@pytest.mark.usefixtures("in_an_empty_folder")
 def test_a_footprint_may_be_written_as_in_python(run):
     import evenroad as er
 

@@ -171,6 +171,8 @@ def test_geojson_is_read_with_holes_lines_and_names(tmp_path):
     for found, wanted in zip(read.polygons, ([STAR], COURT, [WALL]), strict=True):
         for border, corners in zip(found, wanted, strict=True):
             np.testing.assert_array_equal(sorted(border.tolist()), sorted(map(list, corners)))
+    file.write_text(json.dumps({"type": "FeatureCollection", "features": features, "bbox": [-1, -2, 0, 9, 8, 3]}))
+    assert [each.tolist() for each in er.PolygonMap(file).bounds] == [[-1, -2], [9, 8]]
     court = er.PolygonMap(file, bounds=BOUNDS).world(footprint=[(-0.1, -0.1), (0.1, -0.1), (0, 0.2)])
     assert court.valid((4.8, 3.6, 0.0))
     assert not court.valid((3.6, 3.6, 0.0))
@@ -194,6 +196,8 @@ def test_a_parking_case_is_read(tmp_path):
         ("a.geojson", '{"type": "Polygon", "coordinates": [[[0, 1], [1]]]}', "must have positions"),
         ("a.geojson", '{"type": "Polygon", "coordinates": 5}', "must have a list"),
         ("a.geojson", "{", "is not JSON"),
+        ("a.geojson", '{"type": "FeatureCollection", "features": [], "bbox": [0, 1]}', "four or six finite numbers"),
+        ("a.geojson", '{"type": "FeatureCollection", "features": [], "bbox": [0, 1, 0, 2]}', "before the largest"),
         ("a.csv", "1,2,x", "numbers alone"),
         ("a.csv", "1,2,3,4,5,6,1,3,0,0", "need 6"),
         ("a.csv", "1,2,3,4,5,6,1.5,3,0,0", "is no parking case"),
@@ -226,6 +230,14 @@ def test_broken_files_are_refused_in_one_line(tmp_path, name, text, said):
 def test_what_is_no_polygon_is_refused(polygons, options, said):
     with pytest.raises(InvalidValue, match=said):
         er.PolygonMap(polygons, **options)
+
+
+def test_a_footprint_that_is_larger_than_a_small_obstacle_asks_for_bounds():
+    speck = er.PolygonMap([[(3, 3), (3.1, 3), (3, 3.1)]])
+    with pytest.raises(InvalidValue, match="bounds= of the PolygonMap"):
+        speck.world(footprint=BOX)
+    with pytest.raises(InvalidValue, match="bounds= of the PolygonMap"):
+        speck.world(footprint=[(0, 0), (0.01, 0), (0, 0.01)], turning_radius=1.0)
 
 
 def test_a_disk_and_other_files_are_refused():

@@ -33,6 +33,7 @@ class PlanOptions(SamplerOptions):
     groups: ClassVar[dict[str, tuple[str, ...]]] = {
         "from where to where": (
             *("help", "world", "robot_radius", "robot", "roadmap", "start", "goal", "goal_pose"),
+            *("goal_radius", "goal_within"),
             *("footprint", "turning_radius", "forward_only", "holonomic", "cusp_cost"),
             *("tip", "frame", "free_axis", "tolerance", "deg"),
             *("clearance", "prefer_clearance", "unknown_is_free", "rules"),
@@ -150,6 +151,10 @@ class PlanCar(PlanOptions, CarTimes):
     """Where to start: x y angle in map units and radians."""
     goal: Repeatable[tuple[tuple[str, ...], ...]]
     """Where to go: x y angle.  You can give several: the path ends at the first one reached."""
+    goal_radius: float | None = None
+    """Go to any position within this distance of the goal, >= 0; a goal of x y alone then has any angle."""
+    goal_within: float = 0.0
+    """By how much the angle at such a goal may differ, 0 to pi."""
     footprint: str
     """Plan for this footprint: corners "[[x, y], ...]" around the reference point, x forwards, y to the left, in map
     units; or a list of several polygons."""
@@ -162,7 +167,7 @@ class PlanCar(PlanOptions, CarTimes):
     cusp_cost: float | None = None
     """Length that a change between forwards and backwards counts, >= 0 (default: the turning radius)."""
     deg: bool = False
-    """Read the angles of start and goal in degrees."""
+    """Read angles in degrees."""
     clearance: float = 0.0
     """Distance to keep from every obstacle, >= 0, in map units; at corners of the footprint up to 2 % more."""
     prefer_clearance: float = 0.0

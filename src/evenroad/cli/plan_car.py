@@ -14,6 +14,7 @@ from evenroad.cli.plan import PlanCar
 from evenroad.cli.plan_parts import chosen_search, common_query, finish, made_of, output_files, solve_until_stopped
 from evenroad.driving.car_world import LARGEST_ANGLE
 from evenroad.driving.footprint import FootprintLike
+from evenroad.driving.goal_region import GoalRegion
 from evenroad.driving.polygon_map import load_any_map
 from evenroad.errors import InvalidValue, shown
 from evenroad.io import plan_record
@@ -33,7 +34,7 @@ def plan_car(plan: PlanCar) -> int:
     how = chosen_search(plan)
     if how.n is not None or plan.improve:
         raise InvalidValue("a car is planned without points and --improve: only --time, --seed, --raw and --cusp-cost")
-    start, goals = _pose("start", plan.start, plan.deg), [_pose("goal", goal, plan.deg) for goal in plan.goal]
+    start, goals = _pose("start", plan.start, plan.deg), [_goal(goal, plan) for goal in plan.goal]
     gridmap = load_any_map(plan.world, unknown_is_free=plan.unknown_is_free, rules=plan.rules)
     world = gridmap.world(
         footprint=_footprint(plan.footprint),
@@ -59,7 +60,7 @@ def plan_car(plan: PlanCar) -> int:
         problem = read_problem(world, start, goals, Reading(), wanted)
         result, stopped = solve_until_stopped(problem, planner)
     of_car = ("turning_radius", "forward_only", "holonomic", "cusp_cost", "unknown_is_free", "rules")
-    kept = ("clearance", "prefer_clearance")
+    kept = ("clearance", "prefer_clearance", "goal_radius", "goal_within")
     query = {
         "map": str(plan.world),
         "footprint": [outline.tolist() for outline in world.footprint.outlines],
@@ -89,6 +90,18 @@ def _footprint(text: str) -> FootprintLike:
     if not isinstance(corners, list | tuple):
         raise InvalidValue(f'--footprint must be corners as "[[x, y], [x, y], ...]", got {shown(text)}')
     return corners
+
+
+def _goal(words: tuple[str, ...], plan: PlanCar) -> tuple[float, float, float] | GoalRegion:
+    """Return a goal, or with --goal-radius a region."""
+    if plan.goal_radius is None:
+        if plan.goal_within != 0.0:
+            raise InvalidValue("--goal-within goes with --goal-radius, which may be 0")
+        return _pose("goal", words, plan.deg)
+    has_angle = len(" ".join(words).replace(",", " ").split()) != 2
+    x, y, angle = _pose("goal", words if has_angle else (*words, "0"), plan.deg)
+    within = math.radians(plan.goal_within) if plan.deg else plan.goal_within
+    return GoalRegion((x, y), plan.goal_radius, angle=angle if has_angle else None, within=within)
 
 
 def _pose(name: str, words: tuple[str, ...], in_degrees: bool) -> tuple[float, float, float]:

@@ -70,18 +70,20 @@ class CarWorld(OneOrMany):
     def __post_init__(self) -> None:
         low, high = self.grid.bounds
         longest = math.hypot(*(high - low))
+        hint = "" if self.polygons is None else "; bounds= of the PolygonMap say how far it reaches around its polygons"
         radius = require_positive("turning_radius", self.turning_radius, or_zero=True)
         clearance = require_positive("clearance", self.clearance, or_zero=True)
         if radius > longest:
             raise InvalidValue(
                 f"turning_radius must be at most the diagonal of the map, {longest:.6g}, got {radius:.6g}; both are in"
-                " map units"
+                f" map units{hint}"
             )
         width = 2.0 * self.footprint.inscribed[1]
         if width > min(high - low) and width > min(self.grid.shape) * self.grid.resolution:
             raise InvalidValue(
                 f"a footprint must fit on the map: a disk of diameter {width:.6g} lies in it, and the map is"
                 f" {self.grid.shape[1] * self.grid.resolution:.6g} by {self.grid.shape[0] * self.grid.resolution:.6g}"
+                f"{hint}"
             )
         if self.holonomic and (radius > 0.0 or not self.reverse):
             raise InvalidValue("a holonomic robot moves in every direction: turning_radius and reverse are of a car")

@@ -29,12 +29,16 @@ _DEEPEST = 20
 
 @dataclass(frozen=True)
 class PolygonFile:
-    """What a file says of obstacles: the borders of each, its name, points that belong on the map, and notes."""
+    """What a file says of obstacles: the borders of each, its name, points that belong on the map, notes, and bounds.
+
+    Bounds are the least and the largest x and y of the map, (2, 2), where the file has some.
+    """
 
     borders: tuple[tuple[Floats, ...], ...]
     names: tuple[str, ...]
     points: Floats
     notes: tuple[str, ...] = ()
+    bounds: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -101,7 +105,24 @@ def _read_geojson(file: Path) -> PolygonFile:
                 borders.append(found)
                 names.append(name or f"polygon {len(names)}")
     notes = (f"{counted(points, 'point')} of {file} are no obstacles",) if points else ()
-    return PolygonFile(tuple(borders), tuple(names), np.empty((0, 2)), notes)
+    return PolygonFile(tuple(borders), tuple(names), np.empty((0, 2)), notes, _bounds_of(document, file))
+
+
+def _bounds_of(document: Json, file: Path) -> Floats | None:
+    """Return the `bbox` of a file as least and largest x and y, (2, 2): numbers for x and y, or for heights as well."""
+    box = document.get("bbox") if isinstance(document, dict) else None
+    if box is None:
+        return None
+    try:
+        numbers = np.array(box, dtype=np.float64)
+    except (TypeError, ValueError):
+        numbers = np.zeros(0)
+    if numbers.shape not in ((4,), (6,)) or not np.isfinite(numbers).all():
+        raise BrokenFile(f"{file} is not GeoJSON: bbox must be four or six finite numbers, got {shown(box)}")
+    bounds = numbers.reshape(2, -1)[:, :2]
+    if not (bounds[0] < bounds[1]).all():
+        raise BrokenFile(f"{file}: bbox must be the least x and y before the largest, got {shown(box)}")
+    return bounds
 
 
 def _geometries(node: Json, file: Path, name: str, depth: int) -> Iterator[tuple[Mapping[str, Json], str]]:

@@ -58,8 +58,8 @@ class PolygonMap:
         corners of each polygon, n >= 2; two are a wall of no thickness.  A polygon with holes is a sequence of borders.
         At most a million corners.
     bounds : pair of array_like, shape (2,), optional
-        Least and largest x and y of the map.  Default: a quarter of the longer side more than polygons and, of a
-        parking case, start and goal need.
+        Least and largest x and y of the map.  Default: the `bbox` of a GeoJSON file; else a quarter of the longer side
+        more than polygons and, of a parking case, start and goal need.
     resolution : float, optional
         Side of the cells, > 0.  It decides how fast checks are, and no result.  Default: 800 along the longer side.
     names : sequence of str, optional
@@ -108,6 +108,8 @@ class PolygonMap:
             file = read_polygons(polygons)
             borders, points, notes = file.borders, file.points, file.notes
             names = names or file.names
+            if bounds is None and file.bounds is not None:
+                bounds = file.bounds[0], file.bounds[1]
         else:
             borders = _as_borders(polygons)
         borders = tuple(tuple(_outline(border, number) for border in each) for number, each in enumerate(borders))
