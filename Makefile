@@ -48,8 +48,12 @@ $(VENV)/.native: $(KERNEL) $(if $(EVENROAD_VARIANTS),variants) | $(VENV)/.clang
 	$(BIN)/python tools/build_backend.py
 	@touch $@
 
-# Of the packages only where they are is installed: the kernel is built by the rule above, at the same time.
-$(VENV)/.core: pyproject.toml studies/pyproject.toml checker/pyproject.toml constraints.txt | $(VENV)/.clang
+# Of a package only where it is is installed: the kernel is built by the rule above, at the same time.
+$(VENV)/.own: pyproject.toml constraints.txt | $(VENV)/.clang
+	$(PIP) -C kernel=no --no-build-isolation -e .
+	@touch $@
+
+$(VENV)/.core: studies/pyproject.toml checker/pyproject.toml $(VENV)/.own
 	$(PIP) -C kernel=no --no-build-isolation -e . -e ./studies -e ./checker
 	@touch $@
 
@@ -86,7 +90,9 @@ tidy: $(VENV)/.dev
 	$(PIP) clang-tidy
 	$(BIN)/python tools/tidy_native.py
 
-demo: $(VENV)/.core $(VENV)/.native
+# It needs neither the studies nor the checker; what it needs comes while the kernel is compiled.
+demo:
+	+$(MAKE) --no-print-directory -j 2 $(VENV)/.own $(VENV)/.native
 	@mkdir -p out
 	$(BIN)/evenroad demo --out out/demo
 
@@ -130,7 +136,11 @@ $(VENV)-robosuite/.done: pyproject.toml | $(VENV)/.native
 test-simulators: $(VENV)-robosuite/.done
 	$(VENV)-robosuite/bin/python -m pytest -o addopts= tests_peers/simulators
 
-docs: $(VENV)/.dev $(VENV)/.native
+$(VENV)/.docs: $(VENV)/.core
+	$(PIP) -C kernel=no --no-build-isolation -e '.[docs]' -e ./studies
+	@touch $@
+
+docs: $(VENV)/.docs $(VENV)/.native
 	$(BIN)/python -m sphinx -q -W --keep-going -d out/doctrees docs out/docs
 	@echo "out/docs/index.html"
 
