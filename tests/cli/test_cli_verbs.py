@@ -52,3 +52,8 @@ def test_help_comes_whatever_else_is_unfinished(run):
     code, out, error = run("plan", "--robot", "--help")
     assert (code, error) == (0, "")
     assert "--goal-pose" in out
+
+
+@pytest.mark.parametrize("verb", [(), ("points",), ("plan",)])
+def test_help_is_also_a_word(run, verb):
+    assert run("help", *verb) == run(*verb, "--help")

@@ -111,6 +111,8 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _run(arguments: list[str]) -> int:
+    if arguments[:1] == ["help"]:
+        arguments = [*arguments[1:], "--help"]
     verb, words = (arguments or ["--help"])[0], arguments[1:]
     if verb == "--version":
         for word in {*words} - {"-v", "--verbose"}:

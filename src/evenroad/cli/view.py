@@ -128,7 +128,9 @@ class View(RobotOptions):
             plan = read_plan(self.world, self.robot, self.options())
             return plan if self.n is None else replace(plan, result=self._planned(plan.problem), trajectory=None)
         if self.robot is None:
-            raise InvalidValue("give --robot, the arm that moves in this scene, or a plan of evenroad plan")
+            raise InvalidValue(
+                "give --robot, the arm that moves in this scene, or a plan: evenroad plan writes one, also on a map"
+            )
         goal = self.start if self.goal is None else self.goal
         problem = arm_problem(self.robot, self.world, self.start, goal, Reading(), **self.options())
         return PlanFile(problem, self._planned(problem))

@@ -6,7 +6,7 @@ import numpy as np
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.rules import Rule
 from evenroad.space import SO3, BoxSpace, Product, Space
@@ -20,7 +20,8 @@ def as_points(points: PointSet | int, space: Space, rule: Rule | None = None, *,
     if not isinstance(points, PointSet):
         if isinstance(points, bool) or not isinstance(points, int | np.integer):
             raise InvalidValue(
-                f"points must be a PointSet, such as draw('even', 512, 2), or how many points to draw, got {points!r}"
+                "points must be a PointSet, such as draw('even', 512, 2) or PointSet(array), or how many to draw,"
+                f" got {shown(points)}"
             )
         points = even_points(require_count("points", points), space, rule, rng=rng)
     if points.d != space.cube_dim:
