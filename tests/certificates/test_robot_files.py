@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.certificates.certify import certify
+from evenroad.certificates.certify import Sources, certify, claimed_by
 from evenroad.certificates.robot_files import read_robot_files
 from evenroad.errors import InvalidValue
 from tests.certificates.small import URDF, inputs_of, sources_in
@@ -41,6 +41,16 @@ def test_a_robot_that_is_saved_again_is_read_again(arm, tmp_path):
     sources.robot.write_text(URDF.replace('radius="0.1"', 'radius="0.3"'))
     with pytest.raises(InvalidValue, match="ball touches an obstacle"):
         certify(world, PATH, sources, tmp_path / "arm.cert")
+
+
+def test_a_world_of_no_file_is_read_once_until_its_robot_is_saved_again(arm):
+    named, world = arm
+    sources = Sources(named.robot)
+    first = claimed_by(sources, world)
+    assert claimed_by(sources, world) is first
+    assert claimed_by(sources, er.ArmWorld(world.robot, world.scene)) is not first
+    sources.robot.write_text(URDF.replace('radius="0.1"', 'radius="0.3"'))
+    assert claimed_by(sources, world) is not first
 
 
 def test_threads_that_share_a_robot_write_the_same_bytes(tmp_path):

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -15,11 +16,12 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad._native.certificates import Answers, Paths, write_answers
+from evenroad._shared import once_property
 from evenroad.certificates.claim import Claim, Claimed, Links, claim_of
 from evenroad.certificates.curves import TOLERANCES, Curves, driven, straight
 from evenroad.certificates.kept import claimed_keeps, rows_of
 from evenroad.certificates.plain import claimed_scene
-from evenroad.certificates.robot_files import read_robot_files
+from evenroad.certificates.robot_files import ReadRobot, read_robot_files
 from evenroad.certificates.sources import Files, scene_files
 from evenroad.certificates.sources import Sources as Sources
 from evenroad.collision.arm_world import ArmWorld
@@ -52,7 +54,7 @@ def certify(world: object, path: Floats, sources: Sources, file: PathLike, *, st
     if not isinstance(world, ArmWorld):
         raise InvalidValue(f"a certificate is about a path of an arm in a scene, not in {shown(world)}")
     claimed = claimed_by(sources, world, keeps)
-    claim = claim_of(claimed.links, claimed.scene, claimed.beside)
+    claim = claimed.claim
     if states is None:
         curves = straight(continued(path, world.space, path[0]))
         answers, directions = answers_of(claim, curves)
@@ -75,6 +77,11 @@ class OfFiles:
     scene: Scene
     beside: Claimed
 
+    @once_property
+    def claim(self) -> Claim:
+        """All that is to be proved of a path."""
+        return claim_of(self.links, self.scene, self.beside)
+
     def write(self, file: Path, magic: str, more: list[str], tables: bytes) -> None:
         """Write a certificate: a header with some lines more, tables, and the files that it carries."""
         digest, beside = hashlib.sha256(), self.beside
@@ -92,9 +99,23 @@ class OfFiles:
             stream.write(b"".join(len(each).to_bytes(8, "little") + each for each in carried))
 
 
+_known: WeakKeyDictionary[ArmWorld, tuple[ReadRobot, OfFiles]] = WeakKeyDictionary()
+"""What certificates of worlds are about, each as long as there is the world."""
+
+
 def claimed_by(sources: Sources, world: ArmWorld, keeps: Sequence[Keep] = ()) -> OfFiles:
-    """Return what a certificate of a world is about."""
+    """Return what a certificate of a world is about, the same for a world whose scene has no file."""
     read = read_robot_files(sources, world)
+    if keeps or sources.scene is not None:
+        return _claimed_by(read, sources, world, keeps)
+    of, known = _known.get(world, (None, None))
+    if known is None or of is not read:
+        known = _claimed_by(read, sources, world)
+        _known[world] = read, known
+    return known
+
+
+def _claimed_by(read: ReadRobot, sources: Sources, world: ArmWorld, keeps: Sequence[Keep] = ()) -> OfFiles:
     robot = read.files(world)
     claims = claimed_scene(world)
     scene = scene_files(sources, world, claims)
