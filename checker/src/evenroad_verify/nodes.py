@@ -22,17 +22,21 @@ class Nodes:
         self.centre: list[Floats] = []
         self.box: list[Floats] = []
         self.parts: list[list[Part]] = []
+        self._wholes: dict[tuple[int, ...], int] = {}
         self._halves: dict[int, tuple[int, int]] = {}
         self._corners: dict[int, list[tuple[Shape, Floats]]] = {}
 
     def whole(self, frame: int, shapes: list[Shape]) -> int:
-        """Add a node of whole shapes; return its number."""
-        return self._add(frame, [(shape, np.arange(len(shape.corners))) for shape in shapes])
+        """Return the number of a node of whole shapes, the same each time."""
+        key = tuple(map(id, shapes))
+        if key not in self._wholes:
+            self._wholes[key] = self._add(frame, [(shape, np.arange(len(shape.corners))) for shape in shapes])
+        return self._wholes[key]
 
     def _add(self, frame: int, parts: list[Part]) -> int:
         low, high, reach = np.full(3, np.inf), np.full(3, -np.inf), 0.0
         for shape, rows in parts:
-            spans = shape.spans[3:].take(rows, axis=1)
+            spans = _spans(shape, rows, slice(3, 10))
             wide = shape.radius + shape.disc * np.sqrt(np.maximum(0.0, 1.0 - shape.axis**2))
             low, high = np.minimum(low, spans[:3].min(1) - wide), np.maximum(high, spans[3:6].max(1) + wide)
             reach = max(reach, float(spans[6].max()) + shape.radius + shape.disc)
@@ -54,7 +58,7 @@ class Nodes:
     def halves(self, node: int) -> tuple[int, int]:
         """Return the numbers of a node's two halves; Refused where it is a single element."""
         if node not in self._halves:
-            middles = np.concatenate([shape.spans[:3].take(rows, axis=1) for shape, rows in self.parts[node]], axis=1)
+            middles = np.concatenate([_spans(shape, rows, slice(3)) for shape, rows in self.parts[node]], axis=1)
             count = middles.shape[1] // 2
             demand(count > 0, "a single element is halved")
             # Rounded to 2^-20 m: programs that differ in a last bit choose one axis, and order the elements alike.
@@ -87,6 +91,12 @@ class Nodes:
                 far += shape.disc * np.linalg.norm(across, axis=1)
             most = np.maximum(most, far)
         return most
+
+
+def _spans(shape: Shape, rows: Ints, some: slice) -> Floats:
+    """Return some of the spans of elements: of all elements without a copy."""
+    spans = shape.spans[some]
+    return spans if len(rows) == len(shape.corners) else spans.take(rows, axis=1)
 
 
 def _points(shape: Shape, rows: Ints) -> Floats:
