@@ -162,3 +162,16 @@ def test_a_configuration_is_for_a_world_alone_and_must_be_one_of_its_robot():
     world = er.ArmWorld("ur5")
     refused(er.errors.InvalidValue, "must be 6 finite numbers", er.show, world, (0, 1))
     refused(er.errors.UnknownName, "nosuch", er.show, world, {"nosuch": 1.0})
+
+
+def test_points_are_shown_as_their_picture(monkeypatch):
+    seen = []
+    monkeypatch.setattr(Image.Image, "show", lambda picture: seen.append(picture))
+    picture = er.show(er.draw("even", 64, 2))
+    assert seen == [picture]
+
+
+def test_the_trajectory_of_a_task_says_what_to_show():
+    done = Task([MoveTo("inside")]).plan(er.ArmWorld("ur5", "box-reach"), "home")
+    with pytest.raises(er.errors.InvalidValue, match="of a task, show the answer itself"):
+        er.show(done.trajectory())

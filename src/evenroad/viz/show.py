@@ -20,6 +20,7 @@ from evenroad.planning.make_result import make_result
 from evenroad.planning.plan import plan as plan_path
 from evenroad.planning.problem import Problem
 from evenroad.planning.result import PlanResult, Status
+from evenroad.points.pointset import PointSet
 from evenroad.robots.robot import Robot
 from evenroad.scenes.scene import Scene
 from evenroad.task.motion import Motion
@@ -41,6 +42,7 @@ Shown: TypeAlias = (
     | CarTrajectory
     | Motion
     | GridMap
+    | PointSet
     | ArmWorld
     | Robot
     | Scene
@@ -63,7 +65,7 @@ def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | PageServe
 
     Parameters
     ----------
-    what : PlanResult, Trajectory, TaskResult, Motion, ArmWorld, Robot, Scene, GridMap, or a file of one
+    what : PlanResult, Trajectory, TaskResult, Motion, ArmWorld, Robot, Scene, GridMap, PointSet, or a file of one
         A plan or a trajectory must know its world, as those of :func:`evenroad.plan` and their files do.
     q : array_like, shape (dim,), mapping or str, optional
         The configuration at which a robot is shown, as `ArmWorld.valid` takes one.  Default: the state ``home``, or
@@ -120,7 +122,10 @@ def _driven(what: object) -> PlanResult | None:
     if not isinstance(what, Trajectory | CarTrajectory):
         return None
     if what.world is None:
-        raise InvalidValue("this trajectory does not know its world, without which it cannot be shown")
+        raise InvalidValue(
+            "this trajectory does not know its world, without which it cannot be shown;"
+            " of a task, show the answer itself"
+        )
     rows = what.waypoints if isinstance(what, Trajectory) else what.positions
     problem = Problem(what.world, what.positions[0].copy(), what.positions[-1:].copy())
     return make_result(
@@ -135,6 +140,7 @@ def _pictures(q: object) -> list[tuple[type, Callable[..., Image.Image]]]:
         (Robot, lambda robot: draw_arm_world(ArmWorld(robot), q)),
         (Scene, draw_scene),
         (GridMap, lambda grid: grid.plot()),
+        (PointSet, lambda points: points.plot()),
         (TaskResult, lambda done: done.plot()),
         (Motion, lambda motion: plot_parts(motion.parts)),
     ]
