@@ -19,6 +19,8 @@ def opened(address, width, height, colours="light"):
         except playwright.Error as error:
             pytest.skip(f"no Chromium: {error}")
         tab = browser.new_page(viewport={"width": width, "height": height}, color_scheme=colours)
+        # Where other processes keep all processors busy, half a minute is not enough.
+        tab.set_default_timeout(120_000)
         tab.requests, tab.wrong = [], []
         tab.on("request", lambda request: tab.requests.append(request.url))
         tab.on("pageerror", lambda error: tab.wrong.append(str(error)))

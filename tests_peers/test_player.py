@@ -49,9 +49,8 @@ def test_its_kinematics_are_ours(tab, result):
 def test_the_first_picture_comes_soon_in_every_window_and_scheme_and_plays(result, size, scheme, tmp_path):
     save_page(tmp_path / "page.html", result)
     with opened((tmp_path / "page.html").as_uri(), *size, scheme) as tab:
-        # Other processes make it wait: a browser without a graphics card draws on the processors.
-        busy = max(1.0, os.getloadavg()[0] / os.cpu_count())
-        assert tab.evaluate("state.drawn") < 1500 * busy
+        # A browser without a graphics card draws on the processors: where others keep them busy, the time says nothing.
+        assert tab.evaluate("state.drawn") < 1500 or os.getloadavg()[0] > 2 * os.cpu_count()
         tab.wait_for_function("state.time > 0.1")
         assert tab.inner_text("#play") == "Pause"
         tab.click("#play")

@@ -54,7 +54,8 @@ function showArm() {
   const made = { painter, bodies, bodyOf, camera, follow, points, ground: ground.z, after: () => {} };
   draw = () => {
     const paper = getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).map((each) => each / 255);
-    const dense = !bySoftware ? Math.min(devicePixelRatio || 1, 2) : state.playing || state.held || live ? 0.75 : 1.25;
+    const moves = state.playing || state.held;
+    const dense = bySoftware ? (moves ? 0.75 : live ? 1 : 1.25) : Math.min(devicePixelRatio || 1, 2);
     [canvas.width, canvas.height] = [innerWidth, innerHeight].map((each) => Math.round(each * dense));
     if (!camera.eye.own) camera.fitted();
     const view = camera.view(), poses = posesAt(valueOf), poseOf = (body) => body.pose || poses[body.link];

@@ -1,7 +1,9 @@
 // A disk or a car on its map: obstacles, the path and what it sweeps, and the robot at the time that is shown.
 function showMap() {
-  const pen = canvas.getContext("2d"), picture = new Image(), last = data.states.length - 1;
-  if (data.picture) { picture.onload = () => draw(); picture.src = data.picture; }
+  const shown = canvas.getContext("2d"), layer = document.createElement("canvas"), picture = new Image();
+  const last = data.states.length - 1;
+  let pen = shown, painted = ""; // what is drawn on, and what the layer of all that stands still was painted for
+  if (data.picture) { picture.onload = () => { painted = ""; draw(); }; picture.src = data.picture; }
   const reach = data.radius || Math.max(...data.outlines.flat().map((each) => Math.hypot(...each)));
   const eye = { scale: 1, at: [0, 0], own: false }; // pixels of a cell, and the map's position in the middle of the window
   const css = (colour, opacity) => `rgba(${colour.map((each) => Math.round(255 * each))}, ${opacity})`;
@@ -45,24 +47,34 @@ function showMap() {
       pen.beginPath(); pen.moveTo(...data.states[i - 1].slice(0, 2)); pen.lineTo(...data.states[i].slice(0, 2)); pen.stroke();
     }
   }
-  draw = () => {
-    const dense = devicePixelRatio || 1, dark = isDark();
-    canvas.width = innerWidth * dense; canvas.height = innerHeight * dense;
-    if (!eye.own) fitted();
-    const scale = eye.scale * dense, [x, y] = eye.at;
-    pen.setTransform(scale, 0, 0, scale, canvas.width / 2 - scale * x, canvas.height / 2 - scale * y);
+  function paintStill(dark, thin) { // the map, what the robot sweeps, its path, start and goal
     pen.imageSmoothingEnabled = false; pen.lineJoin = pen.lineCap = "round";
     if (data.picture) { pen.filter = dark ? "invert(0.86)" : "none"; pen.drawImage(picture, 0, 0, ...data.size); pen.filter = "none"; }
-    else obstacles(dark, dense / scale);
+    else obstacles(dark, thin);
     pen.fillStyle = dark ? "#2c4763" : "#cfe4f7";
     if (state.swept) for (const each of data.states) { outline(each); pen.fill(); }
-    pen.lineWidth = 2.5 * dense / scale;
+    pen.lineWidth = 2.5 * thin;
     path(dark);
-    pen.lineWidth = 1.5 * dense / scale;
+    pen.lineWidth = 1.5 * thin;
     robot(data.states[0], dark ? "rgba(48, 190, 116, 0.6)" : "rgba(27, 158, 90, 0.4)");
     robot(data.states[last], dark ? "rgba(92, 140, 245, 0.6)" : "rgba(47, 95, 208, 0.4)");
-    const [a, b, s] = share(state.time), now = data.states[a].map((each, k) => each + s * (data.states[b][k] - each));
-    robot(now, isColoured() ? css(hueNow(), 0.85) : "rgba(209, 52, 59, 0.75)", dark ? "#ffc9c9" : "#8d1e24");
+  }
+  draw = () => {
+    const dense = devicePixelRatio || 1, dark = isDark(), size = [innerWidth, innerHeight].map((each) => Math.round(each * dense));
+    if (!eye.own) fitted();
+    const scale = eye.scale * dense, [x, y] = eye.at, thin = dense / scale;
+    const frame = [scale, 0, 0, scale, size[0] / 2 - scale * x, size[1] / 2 - scale * y];
+    const now = [size, frame, dark, state.swept, isColoured()].join();
+    if (now !== painted) {
+      [layer.width, layer.height] = size; painted = now; pen = layer.getContext("2d");
+      pen.setTransform(...frame);
+      paintStill(dark, thin);
+      pen = shown;
+    }
+    [canvas.width, canvas.height] = size;
+    pen.drawImage(layer, 0, 0); pen.setTransform(...frame); pen.lineWidth = 1.5 * thin;
+    const [a, b, s] = share(state.time), pose = data.states[a].map((each, k) => each + s * (data.states[b][k] - each));
+    robot(pose, isColoured() ? css(hueNow(), 0.85) : "rgba(209, 52, 59, 0.75)", dark ? "#ffc9c9" : "#8d1e24");
     say();
   };
   fit = () => { fitted(); draw(); };

@@ -85,7 +85,7 @@ const isDark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => draw());
 
 function freeArea() { // what no pane covers: left, top, right and bottom [pixels]
-  const side = $("side"), beside = side.open && innerWidth > 640;
+  const side = $("side"), beside = side.open && innerWidth > 640, below = side.open && !beside ? side : $("bar");
   return { left: 0, top: $("said").offsetTop + $("said").offsetHeight + 8,
-    right: beside ? side.offsetLeft - 8 : innerWidth, bottom: $("bar").offsetTop - 8 };
+    right: beside ? side.offsetLeft - 8 : innerWidth, bottom: below.offsetTop - 8 };
 }
