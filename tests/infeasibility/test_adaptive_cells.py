@@ -61,6 +61,13 @@ def test_searches_end_as_those_of_scipys_graphs(kind, joints, most):
     assert len(set(found)) > 1
 
 
+def test_first_joints_that_move_no_body_show_nothing():
+    """As of a robot whose links have nothing inside."""
+    world = ArmWorld(flat_arm(), posts(at(1.0, 0.3)))
+    bodies = Bodies(replace(world.robot, capsules=()), world.with_bodies, world.margin)
+    assert search_cells(bodies, np.zeros(2), np.ones((1, 2)), 2, 9_000) == "undecided"
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_cells_that_are_reached_are_a_component_of_scipys(seed):
     """In grids of one to three axes, some of which are circles: those are laid out three times."""

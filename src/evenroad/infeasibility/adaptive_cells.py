@@ -28,6 +28,8 @@ def search_cells(
     It is ``joined`` if cells that seem clear lead to a goal, and ``undecided`` if neither is shown with `most` cells.
     """
     first = first_links(bodies.robot, joints)
+    if not first.capsules:
+        return "undecided"
     grid, tests = (
         cells_around(first, start[:joints], np.full(joints, np.inf), COARSE * joints**2),
         CellTests(bodies, first),
