@@ -29,7 +29,7 @@ def test_a_plan_becomes_a_moving_picture_and_a_scene_shows_the_arm_at_rest(run, 
 
 
 @pytest.mark.parametrize(("words", "said"), [
-    (["box-reach.yaml"], "give --robot"), (["none.json"], "cannot read the plan none.json"),
+    (["box-reach.yaml"], "give --robot"), (["none.json"], "cannot read the plan or trajectory none.json"),
     (["bad.json"], "is not a plan of evenroad"),
     (["box-reach.yaml", "--robot", "ur5", "--gif", "out.png"], "--gif must name a .gif"),
     (["box-reach.yaml", "--robot", "ur5", "--port", "70000"], "port"),
