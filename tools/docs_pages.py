@@ -47,7 +47,10 @@ REFERENCE = {
         ),
     ),
     "qmc": ("Engines for SciPy", ("evenroad.qmc",)),
-    "worlds": ("Spaces and worlds", ("evenroad.space", "evenroad.world", "evenroad.driving", "evenroad.testing")),
+    "worlds": (
+        "Spaces and worlds",
+        ("evenroad.space", "evenroad.world", "evenroad.driving", "evenroad.flight", "evenroad.testing"),
+    ),
     "arms": ("Arms", ("evenroad.robot",)),
     "tasks": ("Constraints and tasks", ("evenroad.constraints", "evenroad.task")),
     "geometry": ("Geometry", ("evenroad.geometry",)),
