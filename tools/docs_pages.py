@@ -73,6 +73,7 @@ REFERENCE = {
             "evenroad.adapters.klampt",
             "evenroad.adapters.mujoco",
             "evenroad.adapters.simulated",
+            "evenroad.adapters.mplib",
         ),
     ),
     "errors": ("Errors", ("evenroad.errors",)),
