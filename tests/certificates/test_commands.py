@@ -70,3 +70,11 @@ def test_a_joint_that_is_held_stands_where_the_plan_holds_it(tmp_path):
     assert b"held 1.5 bend" in data
     assert accepts(data, inputs_of(sources))
     assert not accepts(data.replace(b"held 1.5 bend", b"held 0.0 bend"), inputs_of(sources))
+
+
+def test_numbers_with_commas_between_them_are_carried_as_plain_ones(tmp_path):
+    scene = "obstacles:\n  ball: {shape: sphere, radius: 0.1, xyz: [1.3, 0, 0]}\n"
+    sources = sources_in(tmp_path, scene, URDF.replace('xyz="1 0 0"', 'xyz="1, 0, 0"'))
+    world = er.ArmWorld(er.load_robot(sources.robot), er.load_scene(sources.scene))
+    er.plan(world, [-0.8], [-0.5]).certify(tmp_path / "arm.cert", robot=sources.robot, scene=sources.scene)
+    assert verify([str(tmp_path / "arm.cert"), "-", str(sources.scene)]) == 0

@@ -18,7 +18,10 @@ from evenroad.loading.srdf import read_srdf, with_moving_base
 from evenroad.robots.kinematics import held_values
 from evenroad.robots.robot import Robot
 
-_ODD_XML = re.compile(rb"<xacro:|<!DOCTYPE|<!ENTITY|encoding=[\"'](?!utf-8)", re.IGNORECASE)
+_ODD_XML = re.compile(
+    rb"<xacro:|<!DOCTYPE|<!ENTITY|encoding=[\"'](?!utf-8)|\b(?:xyz|rpy|size|scale)\s*=\s*[\"'][^\"']*,", re.IGNORECASE
+)
+"""What a checker does not read, and evenroad does: numbers with commas between them, too."""
 
 
 class ReadRobot:
