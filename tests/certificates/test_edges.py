@@ -9,7 +9,7 @@ from evenroad.errors import InvalidValue
 from evenroad_verify.command import verify
 from evenroad_verify.errors import Refused
 from tests.certificates.small import certificate_in, inputs_of, sources_in
-from tests.certificates.written import accepts, with_digest
+from tests.certificates.written import accepts, parts_of, with_digest
 
 WALL = "obstacles:\n  wall: {{shape: box, size: [0.2, 0.2, 0.2], xyz: [{x!r}, 0.0, 0.0]}}\n"
 MESH = "obstacles:\n  shell: {shape: mesh, file: shell.stl}\n"
@@ -64,6 +64,17 @@ def test_a_body_inside_of_a_mesh_with_a_hole_is_said_not_to_be_claimed(tmp_path)
     shell.export(tmp_path / "shell.stl")
     sources, data = certificate_in(tmp_path, MESH, [[-0.05], [0.05]])
     assert verify(data, inputs_of(sources)).opened == 1
+
+
+def test_a_fine_mesh_is_proved_apart_as_a_whole(tmp_path):
+    shell = trimesh.creation.icosphere(5, 0.3)
+    shell.apply_translation([1.45, 0.0, 0.0])
+    shell.export(tmp_path / "shell.stl")
+    sources, data = certificate_in(tmp_path, MESH, PATH)
+    assert len(shell.vertices) > 10_000
+    # Two balls that are apart: neither is cut, and the time a few times.
+    assert accepts(data, inputs_of(sources))
+    assert 3 * len(parts_of(data)[2]) < 12
 
 
 def test_flipped_bits_never_stop_the_checker(tmp_path):

@@ -26,13 +26,35 @@ struct Elements {
 struct Part {
   std::shared_ptr<const Elements> shape;
   std::vector<std::int64_t> rows;
-  std::vector<double> corners;  // of these, each once: eight x, eight y, eight z, and so on; the last one is repeated
-  std::size_t count = 0;        // of corners
+};
 
-  Vector corner(std::size_t i) const {
-    const double* const at = corners.data() + i / 8 * 24 + i % 8;
-    return {at[0], at[8], at[16]};
-  }
+/// Points in an order by place: some eights of points are a group, eight groups a larger one, and so on.
+class Corners {
+ public:
+  explicit Corners(std::vector<Vector>&& points);
+
+  /// Return the point that is farthest along a functional.
+  Vector farthest(const Vector& along) const;
+
+ private:
+  struct Found {
+    double most;
+    Vector at;
+  };
+
+  void look(std::size_t group, const Vector& along, Found& found) const;
+  void visit(std::size_t level, std::size_t number, const Vector& along, Found& found) const;
+
+  std::vector<double> points_;              // eight x, eight y, eight z, and so on; the last point is repeated
+  std::vector<std::vector<double>> boxes_;  // of each level: eight middles and half extents, xyz, of what is below
+  std::vector<std::size_t> counts_;         // of these boxes
+};
+
+/// Corners around each of which are the same ball and the same disc.
+struct Rounded {
+  double radius = 0.0, disc = 0.0;
+  Vector axis{};
+  Corners corners;
 };
 
 /// Elements of one frame, and the box around them.
@@ -61,6 +83,7 @@ class Node {
   void halve() const;
 
   std::vector<Part> parts_;
+  std::vector<Rounded> rounded_;
   mutable std::once_flag halved_;
   mutable std::unique_ptr<const Node> halves_[2];
 };

@@ -21,7 +21,7 @@ constexpr double AMPLE = 1e-6;                // with so much over, no better di
 constexpr double TOUCHING = 1e-7;             // nearer single elements touch [m]
 constexpr double EXACT = 1e-7, ROUGH = 0.02;  // relative errors of distances
 constexpr std::int64_t DEEPEST = 26;
-constexpr std::size_t MANY = 2000;  // with more corners, a node is halved before these are looked at
+constexpr std::size_t MANY = 1 << 16;  // with more corners, a node is halved before these are looked at
 
 double length(const Vector& v) { return std::sqrt(squared_length(v)); }
 
@@ -44,25 +44,33 @@ class Writer {
     const double distance = length(between);
     if (distance > 1e-3 && gap(moved, between * (1.0 / distance), By::BOXES) > enough) return BY_CENTRES;
     const Node &first = *task.first, &second = *task.second;
-    const bool many = std::max(first.corners, second.corners) > MANY;
+    const bool many = std::max(first.corners, second.corners) > MANY,
+               both = first.elements == 1 && second.elements == 1;
     const By by = many ? By::BOXES : By::CORNERS;
-    // What separated the pair last often does again.
     Vector& last = last_[static_cast<std::size_t>(task.pair)];
-    const bool is_guessed = squared_length(last) > 0.0;
-    if (is_guessed) {
-      if (const auto answer = by_direction(moved, last, enough, by)) return *answer;
-    }
-    // No direction separates sets of which two points are nearer than what is needed.
-    const Wanted wanted{enough + strayed + AMPLE, enough + strayed, EXACT};
-    const Separation best = separate(moved, is_guessed ? last : between, by, When::BOTH, wanted);
-    if (best.gap > 0.0 && !(best.most < wanted.least)) {
-      last = best.direction;
-      if (const auto answer = by_direction(moved, best.direction, enough, by)) return *answer;
+    Separation best{between, 0.0, 0.0};
+    // What strays farther than two places of the nodes are apart is separated by no direction.
+    if (strayed - moved.loose > distance + size_of(first) + size_of(second)) {
+      if (both) return HALVE_TIME;
+    } else {
+      // What separated the pair last often does again.
+      const bool is_guessed = squared_length(last) > 0.0;
+      if (is_guessed) {
+        if (const auto answer = by_direction(moved, last, enough, by)) return *answer;
+      }
+      // No direction separates sets of which two points are nearer than what is needed.
+      const Wanted wanted{enough + strayed + AMPLE, enough + strayed, EXACT};
+      best = separate(moved, is_guessed ? last : between, by, When::BOTH, wanted);
+      if (best.gap > 0.0 && !(best.most < wanted.least)) {
+        last = best.direction;
+        if (const auto answer = by_direction(moved, best.direction, enough, by)) return *answer;
+      }
     }
     if (many) return first.corners > MANY ? HALVE_FIRST : HALVE_SECOND;
-    const bool both = first.elements == 1 && second.elements == 1;
     // Of single elements only matters whether they touch.
-    const Wanted needed = both ? Wanted{keep + moved.loose + 2.0 * TOUCHING, 0.0, EXACT} : Wanted{1e9, 0.0, ROUGH};
+    const double touching = keep + moved.loose + TOUCHING;
+    const Wanted needed = both ? Wanted{touching + TOUCHING, 0.0, EXACT}
+                               : Wanted{touching + TOUCHING + (keep + moved.loose) / 7.0, touching, ROUGH};
     const Separation at_middle = separate(moved, best.direction, by, When::MIDDLE, needed);
     const double still = at_middle.gap - keep - moved.loose;
     const double travel = at_middle.gap - std::min(best.most, at_middle.gap);
