@@ -141,8 +141,9 @@ def test_the_answer_of_a_file_is_that_of_python_and_is_saved(hand, tmp_path):
     assert steps == (Open(), Close(until="can"), Close(0.01), Open({"finger_l": 0.02}))
     done = Task([Open(), MoveTo([0.5])]).plan(er.ArmWorld(hand), [0.0])
     done.save(tmp_path / "task.json")
-    parts = json.loads((tmp_path / "task.json").read_text())["parts"]
-    assert parts[0]["path"] == [[0.0, 0.0], [0.04, -0.04]]
+    opened = json.loads((tmp_path / "task.json").read_text())["motions"][0]["parts"][0]
+    assert opened["path"] == [[0.0, 0.0], [0.04, -0.04]]
+    assert er.load(tmp_path / "task.json").steps[0] == Open()
     done.trajectory().save(tmp_path / "go.json")
     assert er.load(tmp_path / "go.json").names == ("turn", "finger_l", "finger_r")
 
