@@ -29,15 +29,20 @@ def environment():
 def asking():
     """A node of this process: its publishers, clients and a call that spins."""
     rclpy = pytest.importorskip("rclpy", reason="the extra ros2 is not installed")
+    pytest.importorskip("rclpy.executors", reason="the extra ros2 is not installed")
     os.environ.update(environment())
     with warnings.catch_warnings():
         # Of the parser that rclpy brings.
         warnings.simplefilter("ignore", DeprecationWarning)
         rclpy.init()
         node = rclpy.create_node("asking")
+    # One for all calls: rclpy.spin_once adds the node to one, and takes it away, each time.
+    executor = rclpy.executors.SingleThreadedExecutor()
+    executor.add_node(node)
     try:
         yield node
     finally:
+        executor.shutdown()
         node.destroy_node()
         rclpy.shutdown()
 
@@ -66,21 +71,18 @@ def publisher(node, kind, topic, *, latched=False):
 
 def wait_for(node, done, seconds=PATIENCE):
     """Spin until something is done, and return whether it was."""
-    import rclpy
-
     end = time.monotonic() + seconds
     while not done() and time.monotonic() < end:
-        rclpy.spin_once(node, timeout_sec=0.05)
+        node.executor.spin_once(timeout_sec=0.05)
     return bool(done())
 
 
 def answered(node, client, request, seconds=PATIENCE):
     """The answer of a service, or None if it was lost."""
-    import rclpy
-
     future = client.call_async(request)
-    rclpy.spin_until_future_complete(node, future, timeout_sec=seconds)
-    return future.result()
+    # rclpy's spin_until_future_complete takes longer each time: it keeps a task for every earlier future.
+    wait_for(node, future.done, seconds)
+    return future.result() if future.done() else None
 
 
 def occupancy(cells, frame="map", resolution=0.05):
