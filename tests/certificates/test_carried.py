@@ -10,7 +10,7 @@ import evenroad as er
 from evenroad.certificates.certify import certify
 from evenroad.certificates.sources import Sources
 from evenroad.cli import main
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import main as verify
@@ -248,3 +248,17 @@ def test_an_option_about_certificates_goes_with_one(tmp_path, monkeypatch, capsy
     (tmp_path / "task.yaml").write_text(TASK)
     assert main(["run", "task.yaml", "--embed"]) == 2
     assert "--embed goes with --certificate" in capsys.readouterr().err
+
+
+def test_an_obstacle_with_the_name_of_a_link_that_a_held_object_may_touch_has_no_certificate(tmp_path):
+    """In the scene that is carried, the name would allow the obstacle, too."""
+    sources = sources_in(tmp_path, "obstacles: {}\n")
+    held = er.load_robot(sources.robot).holding(er.Sphere(0.02, xyz=(0, 0, 0.3)), "ball", touches=["base"])
+    for name in ("base", "post"):
+        world = er.ArmWorld(held, er.Scene([er.Sphere(0.05, xyz=(3, 0, 0), name=name)]))
+        if name == "post":
+            certify(world, np.array([[-0.4], [0.4]]), Sources(sources.robot), tmp_path / "arm.cert")
+            assert verify([str(tmp_path / "arm.cert"), str(sources.robot)]) == 0
+            continue
+        with pytest.raises(NotAvailable, match=r"'held' may touch the link 'base', .*: rename the obstacle"):
+            certify(world, np.array([[-0.4], [0.4]]), Sources(sources.robot), tmp_path / "arm.cert")
