@@ -87,6 +87,17 @@ def as_row(
     return row
 
 
+def as_times(t: object, duration: float) -> Floats:
+    """Return times of a motion as an array of their shape [s]; InvalidValue unless all are from 0 to `duration`."""
+    try:
+        times = np.asarray(t, dtype=np.float64)
+    except (TypeError, ValueError):
+        times = np.array(np.nan)
+    if not np.all((times >= 0.0) & (times <= duration)):
+        raise InvalidValue(f"t must be from 0 to {duration:.9g} s, got {shown(t)}")
+    return times
+
+
 def as_file(what: str, path: object, instead: str = "") -> Path:
     """Return the name of a file as a Path, or raise InvalidValue; `instead` says what to do with other values."""
     if not isinstance(path, str | os.PathLike):

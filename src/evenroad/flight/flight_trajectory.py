@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._checks import require_positive
+from evenroad._checks import as_times, require_positive
 from evenroad._files import atomic_write
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.errors import InvalidValue, UnknownName
 from evenroad.world import World
 
 STEP = 0.01
@@ -97,12 +97,7 @@ class FlightTrajectory:
 
     def at(self, t: npt.ArrayLike) -> Floats:
         """Return positions at times, 0 <= t <= duration [s], (..., 3) [m]; InvalidValue for a time outside of it."""
-        try:
-            times = np.asarray(t, dtype=np.float64)
-        except (TypeError, ValueError):
-            times = np.array(np.nan)
-        if not np.all((times >= 0.0) & (times <= self.duration)):
-            raise InvalidValue(f"t must be from 0 to {self.duration:.9g} s, got {shown(t)}")
+        times = as_times(t, self.duration)
         return self._flown(times.reshape(-1)).positions.reshape(*times.shape, 3)
 
     def save(self, path: str | os.PathLike[str]) -> None:

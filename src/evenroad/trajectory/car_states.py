@@ -13,8 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
-from evenroad._checks import counted
-from evenroad.errors import InvalidValue, shown
+from evenroad._checks import as_times, counted
 from evenroad.trajectory.clothoid import poses_on, starts_of
 from evenroad.trajectory.drive_limits import DriveLimits
 from evenroad.trajectory.speed_law import Segments, SpeedLaw, fastest_law
@@ -88,12 +87,7 @@ class CarTrajectory:
 
         InvalidValue for a time outside of it.
         """
-        try:
-            times = np.asarray(t, dtype=np.float64)
-        except (TypeError, ValueError):
-            times = np.array(np.nan)
-        if not np.all((times >= 0.0) & (times <= self.duration)):
-            raise InvalidValue(f"t must be from 0 to {self.duration:.9g} s, got {shown(t)}")
+        times = as_times(t, self.duration)
         return self._states(times.reshape(-1)).positions.reshape(*times.shape, 3)
 
     def save(self, path: str | os.PathLike[str]) -> None:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._call import explains_calls
-from evenroad._checks import counted, require_known, require_positive
+from evenroad._checks import as_times, counted, require_known, require_positive
 from evenroad._hints import KnowsElsewhere
 from evenroad._rows import Rows
 from evenroad.errors import InvalidValue, shown
@@ -153,12 +153,7 @@ class Trajectory(Rows, metaclass=KnowsElsewhere):
         >>> trajectory.at([0.0, trajectory.duration]).round(9).tolist()
         [[3.0, 3.0], [27.0, 17.0]]
         """
-        try:
-            times = np.asarray(t, dtype=np.float64)
-        except (TypeError, ValueError):
-            times = np.array(np.nan)
-        if not np.all((times >= 0.0) & (times <= self.duration)):
-            raise InvalidValue(f"t must be from 0 to {self.duration:.9g} s, got {shown(t)}")
+        times = as_times(t, self.duration)
         if len(self.times) == 1:
             return np.broadcast_to(self.positions[0], (*times.shape, len(self.names))).copy()
         return self._between(times)
