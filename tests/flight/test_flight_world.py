@@ -1,5 +1,6 @@
 """A ball among obstacles: states and motions are what slow checks of many instants say."""
 
+import dataclasses
 import pickle
 
 import numpy as np
@@ -144,3 +145,53 @@ def test_bad_arguments_are_refused_in_one_line(given, says):
     with pytest.raises((InvalidValue, NotAvailable), match=says) as refused:
         FlightWorld(**arguments)
     assert "\n" not in str(refused.value)
+
+
+def test_a_path_beyond_the_limits_is_refused_by_every_check():
+    world = er.FlightWorld(er.Scene([]), speed=6.0, acceleration=8.0, bounds=[(-20, 20)] * 3)
+    fast = np.array([[0.0, 0, 2, 9, 0, 0], [10, 0, 2, 0, 0, 0]])
+    assert not world.motion_valid(fast[0], fast[1])
+    assert not world.validate(fast).any()
+    assert not world.validate(fast[::-1]).any()
+    assert world.free_until(fast) == 0.0
+
+
+def test_a_flight_inside_of_a_closed_mesh_is_free_for_no_time():
+    corners, sides = TETRAHEDRON
+    mesh = er.Mesh((9.0 * corners, sides), name="rock")
+    world = er.FlightWorld(er.Scene([mesh]), radius=0.1, speed=6.0, acceleration=8.0)
+    inside, outside = np.array([1.5, 1.5, 1.5, 0, 0, 0]), np.array([12.0, 12, 12, 0, 0, 0])
+    assert not world.valid(inside)
+    assert world.free_until([inside, inside]) == 0.0
+    assert world.free_until([outside, outside]) == 1000.0
+    live = er.Replanner(world, er.State((12, 12, 12)))
+    assert live.update(inside).status == "start_invalid"
+    assert live.stop is None
+
+
+def test_a_world_with_another_radius_is_the_one_that_is_made_so():
+    ball = er.Sphere(0.5, xyz=(9, 0, 1), name="ball")
+    world = er.FlightWorld(er.Scene([ball]), speed=6.0, acceleration=8.0, velocities={"ball": (-1, 0, 0)})
+    near = np.array([8.0, 0, 1, 0, 0, 0])
+    assert world.valid(near)
+    assert not dataclasses.replace(world, radius=2.0).valid(near)
+    later = world.with_moved({}, {}, elapsed=1.0)
+    assert not later.valid(near)
+    assert not dataclasses.replace(later, radius=0.3).valid(near)
+    resting = dataclasses.replace(later, velocities={"ball": (0, 0, 0)})
+    assert resting.positions == later.positions
+    assert resting.free_until([[6.0, 0, 1, 0, 0, 0]] * 2) == 1000.0 > later.free_until([[6.0, 0, 1, 0, 0, 0]] * 2)
+
+
+def test_what_is_said_of_a_free_state_near_an_obstacle_is_that_nothing_touches():
+    world = er.FlightWorld(er.Scene([er.Sphere(0.5, xyz=(1, 0, 0), name="b")]), speed=6.0, acceleration=8.0)
+    assert world.valid((0.245, 0, 0, 0, 0, 0))
+    assert world.explain((0.245, 0, 0, 0, 0, 0)) == "nothing touches"
+    assert "touches 'b'" in world.explain((0.255, 0, 0, 0, 0, 0))
+
+
+@pytest.mark.parametrize("elapsed", [-1.0, float("nan"), "x"])
+def test_time_does_not_go_back(elapsed):
+    world = er.FlightWorld(er.Scene([]), speed=6.0, acceleration=8.0)
+    with pytest.raises(InvalidValue, match="elapsed"):
+        world.with_moved({}, {}, elapsed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -39,6 +40,15 @@ class Movers(NamedTuple):
     airspace: Airspace
     bodies: FlightBodies
     space: FlightSpace
+    made_of: tuple[object, ...]
+    """What the tables are of: scene, radius, limits, bounds and velocities."""
+
+    @property
+    def positions(self) -> dict[str, list[float]]:
+        """Obstacle -> its position."""
+        velocities = self.made_of[-1]
+        assert isinstance(velocities, Mapping), "the last one"
+        return dict(zip(velocities, self.at.tolist(), strict=True))
 
 
 @explains_calls
@@ -99,12 +109,13 @@ class FlightWorld(OneOrMany):
     _bodies: FlightBodies = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        if (known := self._movers) is not None:
+        if self.jerk is not None:
+            raise NotAvailable(f"limits of the jerk are not supported yet: leave jerk out, got {shown(self.jerk)}")
+        known, own = self._movers, (self.scene, self.radius, self.speed, self.acceleration, self.bounds)
+        if known is not None and all(map(operator.is_, known.made_of, (*own, self.velocities))):
             # Of a world that is the same but for what moved.
             set_fields(self, space=known.space, airspace=known.airspace, _bodies=known.bodies)
             return
-        if self.jerk is not None:
-            raise NotAvailable(f"limits of the jerk are not supported yet: leave jerk out, got {shown(self.jerk)}")
         scene = load_scene(self.scene) if isinstance(self.scene, str | os.PathLike) else self.scene
         if not isinstance(scene, Scene):
             raise InvalidValue(f"scene must be a Scene, or the file or name of one, got {shown(self.scene)}")
@@ -121,10 +132,17 @@ class FlightWorld(OneOrMany):
             bodies.solids, bodies.triangles, bodies.balls, movers, np.array([low, high]), space.native, radius
         )
         at, to = bodies.solids[movers, 13:16].copy(), np.array([*velocities.values()]).reshape(-1, 3)
+        if known is not None and known.made_of[0] is scene:
+            flown = known.positions
+            at = np.array([flown.get(name, row) for name, row in zip(velocities, at.tolist(), strict=True)]).reshape(
+                -1, 3
+            )
         airspace = airspace.with_moved(at, to)
-        set_fields(self, velocities=velocities, _movers=Movers(at, to, airspace, bodies, space))
-        set_fields(self, scene=scene, radius=radius, speed=speed, acceleration=acceleration)
-        set_fields(self, bounds=tuple(zip(low, high, strict=True)), space=space, airspace=airspace, _bodies=bodies)
+        box = tuple(zip(low, high, strict=True))
+        set_fields(self, scene=scene, radius=radius, speed=speed, acceleration=acceleration, bounds=box)
+        set_fields(self, velocities=velocities, space=space, airspace=airspace, _bodies=bodies)
+        made_of = scene, self.radius, self.speed, self.acceleration, self.bounds, self.velocities
+        set_fields(self, _movers=Movers(at, to, airspace, bodies, space, made_of))
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return what a copy is made of, here or in another process: it makes its own tables."""
@@ -134,7 +152,7 @@ class FlightWorld(OneOrMany):
     @property
     def positions(self) -> dict[str, list[float]]:
         """Positions of the obstacles that move [m]."""
-        return dict(zip(self.velocities, self._moving.at.tolist(), strict=True))
+        return self._moving.positions
 
     @property
     def proof(self) -> str:
@@ -153,28 +171,19 @@ class FlightWorld(OneOrMany):
     def valid(self, q: Floats) -> Bools:
         """Return whether the ball is free, within bounds and not too fast in each state, (n, 6): (n,)."""
         states = as_batch("q", q, 6)
-        free = self.airspace.states_free(states)
-        for solid in self._bodies.inside:
-            free &= ~solid.contains(states[:, :3])
-        return free
+        return self.airspace.states_free(states) & self._outside(states)
 
     @one_or_many
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return whether the quickest motion from each row of `a` to that of `b` is proved free: two (m, 6) -> (m,)."""
         first, second = as_batch_pair(a, b, 6)
-        free = self.airspace.motions_free(first, second)
-        for solid in self._bodies.inside:
-            # A ball that touches no side of a mesh on its way stays outside.
-            free &= ~solid.contains(first[:, :3])
-        return free
+        # A ball that touches no side of a mesh on its way stays outside.
+        return self.airspace.motions_free(first, second) & self._outside(first)
 
     def validate(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, 6), are proved free when it is flown from time 0 on: (p - 1,)."""
         states = as_batch("path", path, 6)
-        free = self.airspace.path_free(states)
-        for solid in self._bodies.inside:
-            free &= ~solid.contains(states[:-1, :3])
-        return free
+        return self.airspace.path_free(states) & self._outside(states[:-1])
 
     def free_until(self, path: Floats, horizon: float = HORIZON) -> float:
         """Return until when a flight is proved free, from time 0 on, with the rest at its last state.
@@ -205,8 +214,15 @@ class FlightWorld(OneOrMany):
         >>> world.free_until(path), round(world.free_until([path[0], path[0]]), 2)
         (1000.0, 8.25)
         """
-        limit = require_positive("horizon", horizon, or_zero=True, at_most=FARTHEST)
-        return self.airspace.free_until(as_batch("path", path, 6), limit)
+        limit, states = require_positive("horizon", horizon, or_zero=True, at_most=FARTHEST), as_batch("path", path, 6)
+        return self.airspace.free_until(states, limit) if self._outside(states[:1]).all() else 0.0
+
+    def _outside(self, states: Floats) -> Bools:
+        """Return for each state, (n, 6), whether the middle of the ball is inside of no closed mesh: (n,)."""
+        outside = np.ones(len(states), dtype=bool)
+        for solid in self._bodies.inside:
+            outside &= ~solid.contains(states[:, :3])
+        return outside
 
     def with_moved(
         self,
@@ -222,7 +238,7 @@ class FlightWorld(OneOrMany):
             Obstacle -> its position [m] and velocity [m/s]; the others keep their velocity, and flew on.  Only those
             move that the world has `velocities` of, which may be 0.
         elapsed : float
-            How much later it is [s].
+            How much later it is, >= 0 [s].
 
         Returns
         -------
@@ -244,15 +260,17 @@ class FlightWorld(OneOrMany):
         >>> world.with_moved({}, {}, elapsed=9.0).valid((0, 0, 1, 0, 0, 0))
         False
         """
+        elapsed = require_positive("elapsed", elapsed, or_zero=True, at_most=FARTHEST)
         known, movers = tuple(self.velocities), self._moving
         at, to = movers.at + elapsed * movers.to, movers.to.copy()
         for table, given, what in ((at, positions, "position"), (to, velocities, "velocity")):
             for name, value in given.items():
                 require_known("obstacle that moves:", name, known)
                 table[known.index(name)] = as_row(f"the {what} of {name!r}", value, 3, within=FARTHEST)
-        movers = movers._replace(at=at, to=to, airspace=self.airspace.with_moved(at, to))
-        changed = {name: _as_velocity(name, each) for name, each in velocities.items()}
-        return replace(self, velocities={**self.velocities, **changed}, _movers=movers)
+        changed = {**self.velocities, **{name: _as_velocity(name, each) for name, each in velocities.items()}}
+        made_of = *movers.made_of[:-1], changed
+        movers = movers._replace(at=at, to=to, airspace=self.airspace.with_moved(at, to), made_of=made_of)
+        return replace(self, velocities=changed, _movers=movers)
 
     @property
     def _moving(self) -> Movers:
@@ -270,7 +288,7 @@ class FlightWorld(OneOrMany):
             if solid.contains(state[:, :3])[0]:
                 return f"it is inside of {solid.name!r}"
         found = self.airspace.nearest(state[0, :3].copy(), self.radius + _NEAREST)
-        if found.body < 0:
+        if found.body < 0 or self.airspace.states_free(state)[0]:
             return "nothing touches"
         by = f"its middle is {found.distance:.3g} m away and its radius {self.radius:g} m"
         return f"the ball touches {self._bodies.name_of(found.body)!r}: {by}"

@@ -22,7 +22,7 @@ from evenroad.planning.terminals import as_start_and_goals
 _TRIES = 40
 """Number of shortcuts of a new flight: it has to be there within a millisecond or two."""
 _SECONDS = 0.02
-"""Time of a search after which the next update goes on [s]."""
+"""Time after which a search begins no other round [s]."""
 
 
 class FlightUpdates:
@@ -55,7 +55,7 @@ class FlightUpdates:
         result = self._updated(start, elapsed, began)
         self.path = result.path
         stop = self.world.airspace.stop(start)
-        self.stop = stop if self.world.airspace.path_free(stop)[0] else None
+        self.stop = stop if self.world.validate(stop).all() else None
         return result
 
     def _updated(self, start: Floats, elapsed: float, began: float) -> PlanResult:
@@ -74,7 +74,9 @@ class FlightUpdates:
         query = FlightQuery(airspace, start, self._goals[goal], self._variant + self._failures)
         if not _found(query):
             self._failures += 1
-            message = "no flight was found in time: the next update goes on; fly the stop, if there is one"
+            message = (
+                "no flight was found in time: the next update tries another sequence; fly the stop, if there is one"
+            )
             return make_result(problem, Status.BUDGET_SPENT, message, timings={"search": now() - began})
         path = query.shorten(_TRIES)
         return solution(problem, path, goal, planner="flight", timings={"search": now() - began})

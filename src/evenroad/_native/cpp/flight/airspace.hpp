@@ -75,9 +75,11 @@ class Airspace {
   std::optional<double> first_contact(const Parabola& line, double time) const {
     return bodies_.first_contact(line, time, grown());
   }
-  /// Return the least time from one state to another, if it is below `most` and the motion is proved free.
+  /// Return the least time from one state to another, if it is below `most`, both keep the limits, and the motion is
+  /// proved free.
   std::optional<double> time_between(const State& from, const State& to, double begin,
                                      double most = std::numeric_limits<double>::infinity()) const {
+    if (!keeps_limits(from) || !keeps_limits(to)) return std::nullopt;
     const double time = least_time(from, to, limits_);
     if (time >= most || !is_free(motion_of(from, to, limits_, time), begin)) return std::nullopt;
     return time;

@@ -191,7 +191,7 @@ bool Bodies::is_free(const Vector& at, double time, double radius) const {
 
 bool Bodies::is_free(const Parabola& curve, double time, double radius) const {
   const double h = curve.duration;
-  if (norm(curve.acceleration) * h * h * 0.125 > NEAR_CHORD * radius && h > 0.0) {
+  if (norm(curve.acceleration) * h * h * 0.125 > NEAR_CHORD * std::max(radius, TOLERANCE)) {
     const double half = 0.5 * h;
     return is_free({curve.position, curve.velocity, curve.acceleration, half}, time, radius) &&
            is_free({curve.at(half), curve.velocity_at(half), curve.acceleration, half}, time + half, radius);

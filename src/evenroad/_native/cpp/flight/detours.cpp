@@ -79,10 +79,11 @@ void Detours::add(std::uint32_t parent, const Vector& at) {
 
 bool Detours::go(std::uint32_t from, const Vector& to, int depth) {
   const Vector start = nodes_[from].at, line = to - start;
-  const double length = norm(line), piece = std::min(PIECE * airspace_.radius() / length, 1.0);
+  const double length = norm(line), piece = std::min(PIECE * std::max(airspace_.radius(), TOLERANCE) / length, 1.0);
   std::optional<double> contact;
   double begin = 0.0;
   for (; begin < 1.0 && !contact; begin += contact ? 0.0 : piece) {
+    look_at_clock();
     const Parabola part = Airspace::line(start + line * begin, start + line * std::min(begin + piece, 1.0), pace_);
     contact = airspace_.first_contact(part, (nodes_[from].length + length * begin) / pace_);
   }

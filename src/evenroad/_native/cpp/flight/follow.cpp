@@ -77,7 +77,9 @@ std::vector<std::uint8_t> free_motions(const Airspace& airspace, const std::vect
   double time = 0.0;
   for (std::size_t i = 0; i + 1 < states.size(); i++) {
     const double step = least_time(states[i], states[i + 1], airspace.limits());
-    free.push_back(airspace.is_free(motion_of(states[i], states[i + 1], airspace.limits(), step), time) ? 1 : 0);
+    const bool is_possible = airspace.keeps_limits(states[i]) && airspace.keeps_limits(states[i + 1]);
+    const Motion motion = motion_of(states[i], states[i + 1], airspace.limits(), step);
+    free.push_back(is_possible && airspace.is_free(motion, time) ? 1 : 0);
     time += step;
   }
   return free;
