@@ -105,11 +105,13 @@ def ended(bodies: Bodies, start: Floats, goals: Floats, joints: int, most: int) 
         away, left = (dijkstra(graph, indices=cells_of, min_only=True) for cells_of in terminals)
         # Whole numbers of unknown cells.
         through = np.round(away + left - counts)
-        least = float(through.min())
+        least = max(float(through.min()), 0.0)
         if np.isinf(least):
             return "apart"
         split = ~leaves.clear & (through <= 2.0 * least + 1.0) & (leaves.level < DEEPEST)
-        if least < 0.5:
+        # The cells of the start and of the goal are clear, too.
+        starts, ends = terminals
+        if leaves.clear[starts[0]] and any(leaves.clear[end] and float(away[end]) < 0.5 for end in ends):
             return "joined"
         if not split.any() or len(leaves) + (len(corner) - 1) * int(split.sum()) > most:
             return "undecided"

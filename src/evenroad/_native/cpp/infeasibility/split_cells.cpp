@@ -157,9 +157,15 @@ Ended SplitCells::search(std::span<const double> start, Matrix<const double> goa
   if (from[0] < 0 || to.empty() || std::ranges::min(to) < 0) return Ended::UNDECIDED;
   const std::vector<int> away = fewest_unknown(from, FAR, to);
   int least = FAR;
-  for (const int node : to) least = std::min(least, away[static_cast<std::size_t>(node)] - cost(node));
+  bool is_joined = false;
+  for (const int node : to) {
+    const int reached = away[static_cast<std::size_t>(node)];
+    least = std::min(least, std::max(reached - cost(node), 0));
+    // The cells of the start and of the goal are clear, too.
+    is_joined |= reached == 0 && cost(from[0]) == 0 && cost(node) == 0;
+  }
   if (least >= FAR - 1) return Ended::APART;
-  if (least == 0) return Ended::JOINED;
+  if (is_joined) return Ended::JOINED;
   const std::int64_t limit = SPLIT_OF * least + 1;
   const std::vector<int> left = fewest_unknown(to, limit + 1, {});
   std::vector<int> cells;
