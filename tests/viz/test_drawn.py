@@ -1,11 +1,13 @@
 """The looks of a robot: shapes and colours that its file draws, and what stands for those that cannot be read."""
 
 import logging
+import os
 
 import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad.loading.cache import file_of
 from evenroad.loading.load import load_model
 from evenroad.viz.bodies import robot_parts, robot_sets
 from evenroad.viz.parts import by_colour
@@ -71,9 +73,12 @@ def test_a_colour_that_is_none_is_as_if_there_were_none(arm, rgba):
     assert colours(arm(f'<visual>{CUBE}<material name="m"><color rgba="{rgba}"/></material></visual>')) == bare
 
 
-def test_what_is_wholly_transparent_is_not_drawn(arm):
-    clear = '<material name="clear"><color rgba="0 1 0 0"/></material>'
-    model = arm(f'<visual>{CUBE}</visual><visual><geometry><sphere radius="0.4"/></geometry>{clear}</visual>')
+CLEAR = '<material name="clear"><color rgba="0 1 0 0"/></material>'
+
+
+@pytest.mark.parametrize(("own", "beside"), [(CLEAR, ""), ('<material name="clear"/>', CLEAR)])
+def test_what_is_wholly_transparent_is_not_drawn(arm, own, beside):
+    model = arm(f'<visual>{CUBE}</visual><visual><geometry><sphere radius="0.4"/></geometry>{own}</visual>', beside)
     assert np.abs(robot_parts(model.robot, model.file)["tip"].corners).max() == pytest.approx(0.05)
 
 
@@ -105,3 +110,23 @@ def test_collision_bodies_stand_for_drawings_that_cannot_be_read_and_one_line_sa
     assert "missing.obj" in shown.note
     assert next(iter(shown.sets)) == "collision"
     assert np.abs(shown.sets["collision"]["tip"].corners).max() == pytest.approx(0.2)
+
+
+def test_the_file_of_a_robot_is_the_one_with_its_joints(tmp_path, arm):
+    """An arm with a hand, then one of the same name without: each has its own file."""
+    arm(f"<visual>{CUBE}</visual>")
+    (tmp_path / "with_hand.urdf").write_text(
+        (tmp_path / "arm.urdf")
+        .read_text()
+        .replace(
+            "</robot>",
+            f'<link name="hand">{BALL}</link><joint name="flange" type="fixed"><parent link="tip"/>'
+            '<child link="hand"/><origin xyz="0 0 1"/></joint></robot>',
+        )
+    )
+    for file in tmp_path.glob("*.urdf"):
+        # Files that were just written are not remembered.
+        os.utime(file, (1e9, 1e9))
+    with_hand, bare = load_model(tmp_path / "with_hand.urdf"), load_model(tmp_path / "arm.urdf")
+    assert file_of(with_hand.robot).path.name == "with_hand.urdf"
+    assert file_of(bare.robot).path.name == "arm.urdf"

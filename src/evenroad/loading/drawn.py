@@ -40,28 +40,28 @@ def read_drawn(file: RobotFile) -> list[Drawn]:
     if is_mjcf(file):
         return [Drawn(shape.link, shape) for shape in read_robot(file).shapes]
     root, _ = read_urdf_xml(file)
-    named = {str(each.get("name")): colour for each in root.iter("material") if (colour := _colour(each)) is not None}
+    named = {str(each.get("name")): rgba for each in root.iter("material") if len(rgba := _rgba(each)) >= 3}
     return [drawn for link in root.findall("link") for drawn in _of_link(link, named, file)]
 
 
-def _of_link(link: Element, named: dict[str, Colour], file: RobotFile) -> Iterator[Drawn]:
+def _of_link(link: Element, named: dict[str, list[float]], file: RobotFile) -> Iterator[Drawn]:
     """Yield the bodies of a link that are not wholly transparent."""
     name = link.attrib["name"]
     for body in link.findall("collision"):
         material = body.find("material")
-        if material is not None and _rgba(material)[3:] == [0.0]:
+        rgba = [] if material is None else _rgba(material)
+        if len(rgba) < 3 and material is not None:
+            rgba = named.get(str(material.get("name")), [])
+        if rgba[3:] == [0.0]:
             continue
-        own = None if material is None else _colour(material)
-        colour = named.get(str(material.get("name"))) if own is None and material is not None else own
         try:
             shape: Shape | EvenroadError = link_shape(name, body, file)
         except EvenroadError as error:
             shape = error
-        yield Drawn(name, shape, colour)
+        yield Drawn(name, shape, _colour(rgba))
 
 
-def _colour(material: Element) -> Colour | None:
-    rgba = _rgba(material)
+def _colour(rgba: list[float]) -> Colour | None:
     if len(rgba) < 3:
         return None
     red, green, blue = (round(255.0 * min(max(part, 0.0), 1.0)) for part in rgba[:3])
