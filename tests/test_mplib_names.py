@@ -93,6 +93,10 @@ def test_points_in_the_worlds_frame_are_in_the_way_only_where_they_are_used(plan
     ways.append(planner.plan_screw(goal, HOME, use_point_cloud=False)["position"])
     np.testing.assert_array_equal(*ways)
     assert planner.plan_screw(goal, HOME, use_point_cloud=True)["status"] != "Success"
+    # The points stay where they are, and the arm with its goal moves away from them.
+    planner.set_base_pose([BASE[0] + 3.0, *BASE[1:]])
+    beside = [goal[0] + 3.0, *goal[1:]]
+    assert planner.plan_screw(beside, HOME, use_point_cloud=True)["status"] == "Success"
 
 
 def test_joints_a_little_beyond_their_limits_are_taken_back(planner):

@@ -28,7 +28,7 @@ class Nodes:
 
     def whole(self, frame: int, shapes: list[Shape]) -> int:
         """Return the number of a node of whole shapes, the same each time."""
-        key = tuple(map(id, shapes))
+        key = (frame, *map(id, shapes))
         if key not in self._wholes:
             self._wholes[key] = self._add(frame, [(shape, np.arange(len(shape.corners))) for shape in shapes])
         return self._wholes[key]

@@ -90,17 +90,25 @@ class Planner:
         ones = np.ones(len(group))
         self.joint_vel_limits = ones if joint_vel_limits is None else np.asarray(joint_vel_limits, np.float64)
         self.joint_acc_limits = ones if joint_acc_limits is None else np.asarray(joint_acc_limits, np.float64)
-        self._base, self._cloud = Pose(), Scene([])
+        self._base = Pose()
+        self._points: tuple[Floats, float] | None = None
         self._robots: dict[tuple[float, ...], Robot] = {}
 
     def set_base_pose(self, pose: npt.ArrayLike) -> None:
-        """Say where the robot's root link is: position and quaternion (w, x, y, z) in the world's frame."""
+        """Say where the root link is in the world's frame, (7,): position [m] and quaternion (w, x, y, z)."""
         self._base = _pose("the base", pose)
 
     def update_point_cloud(self, pc: npt.ArrayLike, radius: float = 1e-3) -> None:
-        """Keep points, (n, 3), in the world's frame, as balls of a radius [m]."""
-        to_root = self._base.inverse().matrix
-        self._cloud = Scene([PointCloud(np.asarray(pc) @ to_root[:3, :3].T + to_root[:3, 3], radius, name="cloud")])
+        """Keep points, (n, 3), in the world's frame, as balls of a radius > 0 [m]; InvalidValue for others."""
+        cloud = PointCloud(pc, radius)
+        self._points = cloud.points, cloud.radius
+
+    def _scene(self) -> Scene:
+        """Return the points in the frame of the root link, wherever it is now."""
+        if self._points is None:
+            return Scene([])
+        to_root, (points, radius) = self._base.inverse().matrix, self._points
+        return Scene([PointCloud(points @ to_root[:3, :3].T + to_root[:3, 3], radius, name="cloud")])
 
     def plan_screw(self, target_pose: npt.ArrayLike, qpos: npt.ArrayLike, **options: Any) -> Answer:
         """Move the tip in a straight line, at a constant rate of rotation; mplib's tip follows a screw.
@@ -112,12 +120,20 @@ class Planner:
         qpos : array_like
             Values of all joints of the simulator.
         **options
-            ``time_step`` (0.1 s), ``planning_time`` (1 s), ``use_point_cloud`` (False), ``wrt_world`` (True).
+            ``time_step`` (0.1 s; the last step may be shorter), ``planning_time`` (1 s), ``use_point_cloud`` (False),
+            ``wrt_world`` (True).
 
         Returns
         -------
         dict
             ``status`` says why there is no motion, if there is none.
+
+        Raises
+        ------
+        UnknownName
+            For another option.
+        InvalidValue
+            For ``use_attach``, or arrays of other lengths.
         """
         return self._answer(target_pose, qpos, options, straight=True)
 
@@ -134,7 +150,7 @@ class Planner:
         if given["use_attach"]:
             raise InvalidValue("use_attach: hold things by robot.holding(...) of evenroad instead")
         step = require_positive("time_step", given["time_step"])
-        world, start = self._world(qpos, self._cloud if given["use_point_cloud"] else Scene([]))
+        world, start = self._world(qpos, self._scene() if given["use_point_cloud"] else Scene([]))
         pose = _pose("the goal", target)
         goal = PoseGoal(self._base.inverse() @ pose if given["wrt_world"] else pose, tip=self.move_group)
         seconds = require_positive("planning_time", given["planning_time"])
@@ -156,12 +172,13 @@ class Planner:
                 value = round(values[joint.name] / APART) * APART
                 held[joint.name] = min(max(value, joint.lower), joint.upper)
         key = tuple(held.values())
-        if key not in self._robots:
+        robot = self._robots.get(key)
+        if robot is None:
             # Grippers stand in few places; more than these would only fill memory.
-            if len(self._robots) > 32:
+            if len(self._robots) >= 32:
                 self._robots.clear()
-            self._robots[key] = with_group(self.robot, self.robot.group, held)
-        world = ArmWorld(self._robots[key], scene)
+            robot = self._robots[key] = with_group(self.robot, self.robot.group, held)
+        world = ArmWorld(robot, scene)
         # Simulated joints are beyond their limits by a little.
         start = np.array([values[name] for name in self.robot.group])
         return world, np.clip(start, world.space.low, world.space.high)

@@ -22,7 +22,7 @@ _PLAIN = (str, bool, int, float)
 
 
 def plain_value(value: object) -> Any:
-    """Return a step, or what it holds, as plain JSON values; what is none of these becomes its text."""
+    """Return a step, or what it holds, as plain JSON values; InvalidValue for what a file cannot hold."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if value is None or isinstance(value, _PLAIN):
@@ -37,7 +37,7 @@ def plain_value(value: object) -> Any:
         return {"is": type(value).__name__} | {
             each.name: plain_value(getattr(value, each.name)) for each in fields(value)
         }
-    return str(value)
+    raise InvalidValue(f"a task's file cannot hold {shown(value)}")
 
 
 def value_of_plain(plain: Any) -> Any:
