@@ -48,13 +48,13 @@ $(VENV)/.native: $(KERNEL) $(if $(EVENROAD_VARIANTS),variants) | $(VENV)/.clang
 	$(BIN)/python tools/build_backend.py
 	@touch $@
 
-# Of a package only where it is is installed: the kernel is built by the rule above, at the same time.
+# Only where a package lies is installed: the kernel is built by the rule above, at the same time.
 $(VENV)/.own: pyproject.toml constraints.txt | $(VENV)/.clang
 	$(PIP) -C kernel=no --no-build-isolation -e .
 	@touch $@
 
 $(VENV)/.core: studies/pyproject.toml checker/pyproject.toml $(VENV)/.own
-	$(PIP) -C kernel=no --no-build-isolation -e . -e ./studies -e ./checker
+	$(PIP) -C kernel=no --no-build-isolation -e ./studies -e ./checker
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.core

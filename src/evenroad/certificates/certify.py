@@ -99,7 +99,7 @@ class OfFiles:
             stream.write(b"".join(len(each).to_bytes(8, "little") + each for each in carried))
 
 
-_known: WeakKeyDictionary[ArmWorld, tuple[ReadRobot, OfFiles]] = WeakKeyDictionary()
+_known: WeakKeyDictionary[ArmWorld, tuple[ReadRobot, tuple[tuple[str, float], ...], OfFiles]] = WeakKeyDictionary()
 """What certificates of worlds are about, each as long as there is the world."""
 
 
@@ -108,10 +108,11 @@ def claimed_by(sources: Sources, world: ArmWorld, keeps: Sequence[Keep] = ()) ->
     read = read_robot_files(sources, world)
     if keeps or sources.scene is not None:
         return _claimed_by(read, sources, world, keeps)
-    of, known = _known.get(world, (None, None))
-    if known is None or of is not read:
+    held = tuple(held_values(world.robot).items())
+    of, stood, known = _known.get(world, (None, None, None))
+    if known is None or of is not read or stood != held:
         known = _claimed_by(read, sources, world)
-        _known[world] = read, known
+        _known[world] = read, held, known
     return known
 
 

@@ -155,7 +155,7 @@ def _parts(file: Path, with_colours: bool) -> tuple[float, list[_Object]]:
 
 
 def _colours_of(mesh: Trimesh) -> Colours | None:
-    """Return the colours of a mesh's triangles; those of a texture are the means of its corners."""
+    """Return the colours of a mesh's triangles; those of a texture are the means of its corners, of 64 colours."""
     look = mesh.visual
     if not look.defined:
         return None
@@ -165,6 +165,8 @@ def _colours_of(mesh: Trimesh) -> Colours | None:
             return np.broadcast_to(np.array(look.material.main_color[:3], dtype=np.uint8), (len(mesh.faces), 3))
         look = look.to_color()
         look.mesh = mesh
+        # What is drawn is a body for each colour.
+        return np.array(look.face_colors[:, :3] // 64 * 64 + 32, dtype=np.uint8)
     return np.array(look.face_colors[:, :3], dtype=np.uint8)
 
 
