@@ -130,3 +130,18 @@ def test_the_file_of_a_robot_is_the_one_with_its_joints(tmp_path, arm):
     with_hand, bare = load_model(tmp_path / "with_hand.urdf"), load_model(tmp_path / "arm.urdf")
     assert file_of(with_hand.robot).path.name == "with_hand.urdf"
     assert file_of(bare.robot).path.name == "arm.urdf"
+
+
+def test_the_newest_of_many_robots_are_remembered(tmp_path, arm):
+    """Each robot beyond the number that is kept puts out the oldest one alone."""
+    arm(f"<visual>{CUBE}</visual>")
+    text = (tmp_path / "arm.urdf").read_text()
+    robots = []
+    for number in range(40):
+        file = tmp_path / f"arm{number}.urdf"
+        file.write_text(text.replace("0 0 1", f"0 0 {1 + number}"))
+        # Files that were just written are not remembered.
+        os.utime(file, (1e9, 1e9))
+        robots.append(load_model(file).robot)
+        for back in range(min(number, 20)):
+            assert file_of(robots[number - back]).path.name == f"arm{number - back}.urdf"

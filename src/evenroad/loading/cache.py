@@ -147,8 +147,8 @@ class Remembered(Generic[Value]):
         just_now = max(saved for saved, *_ in files.values()) > time.time_ns() - _AT_ONCE
         if not plain or just_now or stamps(files) != files:
             return
-        if len(self._kept) >= self._most:
-            self._kept.clear()
+        for oldest in list(self._kept)[: max(0, len(self._kept) + 1 - self._most)]:
+            self._kept.pop(oldest, None)
         self._kept[_asked_here(asked)] = files, value
 
 
