@@ -1,7 +1,10 @@
 #include "drive/forward_reach.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <queue>
+#include <utility>
 
 #include "common/time_limit.hpp"
 
@@ -18,9 +21,9 @@ constexpr std::int64_t MOST_SLICES = 720;
 constexpr double SQUARES = 8.0;
 /// Largest number of squares in a cell, along a side, and of boxes.
 constexpr double MOST_IN_CELL = 4.0;
-constexpr double MOST_SQUARES = 8e8;
-/// Rounding of places.
-constexpr double POSITION_ROUNDING = 1e-9;
+constexpr double MOST_SQUARES = 4e8;
+/// Rounding of places, and of a turn by whole slices, as a share.
+constexpr double POSITION_ROUNDING = 1e-9, TURN_ROUNDING = 1e-9;
 
 }  // namespace
 
@@ -34,8 +37,91 @@ ForwardReach::ForwardReach(const Vehicle& vehicle, const Steering& steering)
       side_(1.0 / std::clamp(std::ceil(SQUARES / length_), 1.0, MOST_IN_CELL)),
       rows_(static_cast<std::int64_t>(std::ceil(static_cast<double>(vehicle.rows()) / side_))),
       columns_(static_cast<std::int64_t>(std::ceil(static_cast<double>(vehicle.columns()) / side_))),
+      words_((columns_ + 63) / 64),
       slices_(vehicle, count_, {}),
-      spans_(count_) {}
+      spans_(count_) {
+  // A hair less than whole slices: a turn by more would end in one more of them, drive after drive.
+  length_ = std::min(length_, SLICES * width_ * radius_ * (1.0 - TURN_ROUNDING));
+}
+
+/// What is reached from a box, drive after drive: all that is gone to from 64 columns at once.
+class ForwardReach::Flood {
+ public:
+  Flood(ForwardReach& reach, const Pose& from, const Pose& to, bool is_backwards)
+      : reach_(reach),
+        last_(reach.box_of(to, is_backwards)),
+        turned_(is_backwards ? reach.count_ / 2 : 0),
+        seen_(reach.rows_ * reach.words_ * reach.count_, 0),
+        waiting_(seen_.size(), 0) {
+    const Box first = reach.box_of(from, is_backwards);
+    // A drive that is shorter first: then whole ones lead to every pose of a path, and to its end.
+    go({first.slice, first.row, first.column >> 6}, std::uint64_t{1} << (first.column & 63),
+       reach.make_spans(first.slice, true));
+  }
+
+  bool is_there() const {
+    return (seen_[number_of({last_.slice, last_.row, last_.column >> 6})] >> (last_.column & 63) & 1) != 0;
+  }
+  bool is_done() const { return numbers_.empty(); }
+  /// Number of boxes that were gone to others from.
+  std::int64_t gone() const { return gone_; }
+
+  /// Go on from those of a word that wait.
+  void go_on() {
+    const std::int64_t number = numbers_.front(), line = number / reach_.count_;
+    numbers_.pop();
+    const Word word{number % reach_.count_, line / reach_.words_, line % reach_.words_};
+    const std::uint64_t bits = std::exchange(waiting_[number], 0);
+    gone_ += std::popcount(bits);
+    go(word, bits, reach_.spans_from(word.slice));
+  }
+
+ private:
+  using Wide = unsigned __int128;
+
+  /// Slices lie side by side: a drive ends in many of them.
+  std::int64_t number_of(const Word& word) const {
+    return (word.row * reach_.words_ + word.number) * reach_.count_ + word.slice;
+  }
+
+  void go(const Word& word, std::uint64_t bits, const std::vector<Span>& spans) {
+    // What a span of each number of columns makes of the bits.
+    std::array<Wide, 65> widened;
+    std::int64_t known = 1;
+    widened[1] = bits;
+    for (const Span& span : spans) {
+      const std::int64_t row = word.row + span.row;
+      if (row < 0 || row >= reach_.rows_) continue;
+      for (; known < span.count; known++) widened[known + 1] = widened[known] | widened[1] << known;
+      const Wide wide = widened[span.count];
+      const std::int64_t first = 64 * word.number + span.first, shift = first & 63;
+      const std::int64_t slice = (word.slice + span.slice + reach_.count_) % reach_.count_;
+      const Wide shifted = wide << shift;
+      reach({slice, row, first >> 6}, static_cast<std::uint64_t>(shifted));
+      reach({slice, row, (first >> 6) + 1}, static_cast<std::uint64_t>(shifted >> 64));
+      if (shift > 0) reach({slice, row, (first >> 6) + 2}, static_cast<std::uint64_t>(wide >> (128 - shift)));
+    }
+  }
+
+  void reach(const Word& word, std::uint64_t bits) {
+    if (bits == 0 || word.number < 0 || word.number >= reach_.words_) return;
+    const std::int64_t number = number_of(word);
+    std::uint64_t fresh = bits & ~seen_[number];
+    if (fresh == 0) return;
+    seen_[number] |= fresh;
+    fresh = reach_.open_of({(word.slice + turned_) % reach_.count_, word.row, word.number}, fresh);
+    if (fresh == 0) return;
+    if (waiting_[number] == 0) numbers_.push(number);
+    waiting_[number] |= fresh;
+  }
+
+  ForwardReach& reach_;
+  Box last_;
+  std::int64_t turned_;
+  std::vector<std::uint64_t> seen_, waiting_;
+  std::queue<std::int64_t> numbers_;  ///< Of words in which boxes wait.
+  std::int64_t gone_ = 0;
+};
 
 Apart ForwardReach::find(const Pose& start, const Pose& goal, std::int64_t most) {
   const bool is_inside = std::ranges::any_of(vehicle_.footprint().parts, [](const std::vector<Vec>& part) {
@@ -47,8 +133,18 @@ Apart ForwardReach::find(const Pose& start, const Pose& goal, std::int64_t most)
   // A reference point outside of the footprint may leave the map.
   const double boxes = static_cast<double>(count_) * static_cast<double>(rows_) * static_cast<double>(columns_);
   if (!is_inside || boxes > MOST_SQUARES) return Apart::UNKNOWN;
-  const Apart from_start = flood(start, goal, false, most);
-  return from_start == Apart::PROVED ? from_start : flood(goal, start, true, most);
+  std::array<Flood, 2> floods{Flood(*this, start, goal, false), Flood(*this, goal, start, true)};
+  ClockWatch clock(64);
+  // The smaller one decides, unless it is joined: rounding joins one of them more often than both.
+  for (;;) {
+    const bool is_second = floods[0].is_there() || (!floods[1].is_there() && floods[1].gone() < floods[0].gone());
+    Flood& flood = floods[is_second ? 1 : 0];
+    if (flood.is_there()) return Apart::JOINED;
+    if (flood.is_done()) return Apart::PROVED;
+    if (flood.gone() >= most) return Apart::UNKNOWN;
+    clock.look();
+    flood.go_on();
+  }
 }
 
 /// Backwards, a car drives as one that is turned around does forwards.
@@ -58,47 +154,16 @@ ForwardReach::Box ForwardReach::box_of(const Pose& pose, bool is_backwards) cons
           static_cast<std::int64_t>(pose.y / side_), static_cast<std::int64_t>(pose.x / side_)};
 }
 
-Apart ForwardReach::flood(const Pose& from, const Pose& to, bool is_backwards, std::int64_t most) {
-  const Box first = box_of(from, is_backwards), last = box_of(to, is_backwards);
-  const std::int64_t words = columns_ / 64 + 2;
-  // Slices lie side by side: a drive ends in many of them.
-  std::vector<std::uint64_t> seen(rows_ * words * count_, 0);
-  std::vector<Box> boxes;
-  const auto reach = [&](const Box& box, const std::vector<Span>& spans) {
-    for (const Span& span : spans) {
-      const std::int64_t slice = (box.slice + span.slice + count_) % count_, row = box.row + span.row;
-      const std::int64_t begin = std::max<std::int64_t>(box.column + span.first, 0);
-      const std::int64_t end = std::min(box.column + span.last, columns_ - 1);
-      if (row < 0 || row >= rows_) continue;
-      std::uint64_t* line = seen.data() + row * words * count_ + slice;
-      const std::int64_t body = is_backwards ? (slice + count_ / 2) % count_ : slice;
-      const auto cell_row = static_cast<std::int64_t>((static_cast<double>(row) + 0.5) * side_);
-      for (std::int64_t left = begin; left <= end; left = (left | 63) + 1) {
-        std::uint64_t& word = line[(left >> 6) * count_];
-        const std::int64_t right = std::min(end, left | 63);
-        std::uint64_t fresh = ~word & ~std::uint64_t{0} << (left & 63) & ~std::uint64_t{0} >> (63 - (right & 63));
-        for (word |= fresh; fresh != 0; fresh &= fresh - 1) {
-          const std::int64_t column = (left & ~std::int64_t{63}) + std::countr_zero(fresh);
-          const auto cell = static_cast<std::int64_t>((static_cast<double>(column) + 0.5) * side_);
-          if (slices_.is_open({body, cell_row, cell})) boxes.push_back({slice, row, column});
-        }
-      }
-    }
-  };
-  const auto is_there = [&] {
-    return (seen[(last.row * words + (last.column >> 6)) * count_ + last.slice] >> (last.column & 63) & 1) != 0;
-  };
-  // A drive that is shorter first: then whole ones lead to every pose of a path, and to its end.
-  reach(first, make_spans(first.slice, true));
-  ClockWatch clock(256);
-  for (std::size_t next = 0; next < boxes.size(); next++) {
-    if (is_there()) return Apart::JOINED;
-    if (static_cast<std::int64_t>(next) >= most) return Apart::UNKNOWN;
-    clock.look();
-    const Box box = boxes[next];
-    reach(box, spans_from(box.slice));
+/// Return which of these boxes of a word are open.
+std::uint64_t ForwardReach::open_of(const Word& word, std::uint64_t bits) {
+  const auto row = static_cast<std::int64_t>((static_cast<double>(word.row) + 0.5) * side_);
+  std::uint64_t open = 0;
+  for (; bits != 0; bits &= bits - 1) {
+    const std::int64_t column = 64 * word.number + std::countr_zero(bits);
+    const auto cell = static_cast<std::int64_t>((static_cast<double>(column) + 0.5) * side_);
+    if (column < columns_ && slices_.is_open({word.slice, row, cell})) open |= bits & -bits;
   }
-  return is_there() ? Apart::JOINED : Apart::PROVED;
+  return open;
 }
 
 const std::vector<ForwardReach::Span>& ForwardReach::spans_from(std::int64_t slice) {
@@ -124,7 +189,7 @@ std::vector<ForwardReach::Span> ForwardReach::make_spans(std::int64_t slice, boo
   const double angle = (static_cast<double>(slice) + 0.5) * width_, c = std::cos(angle), s = std::sin(angle);
   const double wide = side_ * (std::abs(c) + std::abs(s));
   const auto reached = static_cast<std::int64_t>(std::ceil((1.5 * length_) / side_)) + 2;
-  const auto most = static_cast<std::int64_t>(std::ceil(length_ / radius_ / width_ + POSITION_ROUNDING));
+  const auto most = static_cast<std::int64_t>(std::ceil(length_ / radius_ / width_));
   std::vector<Span> spans;
   for (std::int64_t by = -most; by <= most; by++) {
     const Moved to = moved(by, is_shorter);
@@ -133,15 +198,19 @@ std::vector<ForwardReach::Span> ForwardReach::make_spans(std::int64_t slice, boo
     const double across = 0.5 * width_ * (to.most + 0.5 * width_ * aside) + POSITION_ROUNDING;
     const double along = 0.5 * width_ * (aside + 0.5 * width_ * to.most) + POSITION_ROUNDING;
     for (std::int64_t row = -reached; row <= reached; row++) {
-      Span span{by, row, reached + 1, -reached - 1};
+      Span span{by, row, reached + 1, 0};
+      std::int64_t last = -reached - 1;
       for (std::int64_t column = -reached; column <= reached; column++) {
         const Vec at = side_ * Vec{static_cast<double>(column), static_cast<double>(row)};
         const double x = c * at.x + s * at.y, y = c * at.y - s * at.x;
         if (x < to.least - along - wide || x > to.most + along + wide) continue;
         if (y < to.right - across - wide || y > to.left + across + wide) continue;
-        span.first = std::min(span.first, column), span.last = std::max(span.last, column);
+        span.first = std::min(span.first, column), last = column;
       }
-      if (span.first <= span.last) spans.push_back(span);
+      for (; span.first <= last; span.first += 64) {
+        span.count = std::min<std::int64_t>(last - span.first + 1, 64);
+        spans.push_back(span);
+      }
     }
   }
   return spans;

@@ -23,17 +23,23 @@ class ForwardReach {
 
  private:
   using Box = Slices::Box;
-  /// Columns of a row, in a slice, that a drive may end in, relative to where it begins.
+  /// Columns of a row, in a slice, that a drive may end in, relative to where it begins: 1 to 64.
   struct Span {
-    std::int64_t slice, row, first, last;
+    std::int64_t slice, row, first, count;
   };
   /// What a drive of some length may do to a pose, seen from there: along it, and to its left.
   struct Moved {
     double least, most, right, left;
   };
 
-  Apart flood(const Pose& from, const Pose& to, bool is_backwards, std::int64_t most);
+  /// 64 columns of a row, in a slice.
+  struct Word {
+    std::int64_t slice, row, number;
+  };
+  class Flood;
+
   Box box_of(const Pose& pose, bool is_backwards) const;
+  std::uint64_t open_of(const Word& word, std::uint64_t bits);
   const std::vector<Span>& spans_from(std::int64_t slice);
   std::vector<Span> make_spans(std::int64_t slice, bool is_shorter) const;
   Moved moved(std::int64_t slices, bool is_shorter) const;
@@ -42,7 +48,7 @@ class ForwardReach {
   double radius_, length_;  ///< Of turns, and of a drive.
   std::int64_t count_;      ///< Number of slices.
   double width_, side_;     ///< Angle of a slice, and side of a square.
-  std::int64_t rows_, columns_;
+  std::int64_t rows_, columns_, words_;
   Slices slices_;
   std::vector<std::vector<Span>> spans_;
 };
