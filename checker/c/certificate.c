@@ -3,7 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char MAGIC[] = "evenroad certificate 1\n", OF_NO_PATH[] = "evenroad certificate of no path 1\n";
+static const char MAGIC[] = "evenroad certificate 1\n", OF_NO_PATH[] = "evenroad certificate of no path 1\n",
+                  OF_PAIRS[] = "evenroad certificate of pairs 1\n";
 
 /* Lines that may stand once: of all certificates, of paths, of no path, and those that may be left out. */
 enum {
@@ -133,17 +134,19 @@ static void read_digest(Certificate* to, const char* text) {
   }
 }
 
-/* A count of answers, and the columns behind it. */
-static Tree tree_of(char* text) {
+/* Columns or, before them, the count of answers. */
+static Tree tree_of(char* text, bool counted) {
   Tree tree = {.columns = take(strlen(text) / 2 + 1, sizeof *tree.columns)};
-  char* next = strchr(text, ' ');
-  if (next) *next++ = 0;
-  tree.answer_count = count_of(text);
-  while (next) {
-    text = next;
+  for (char* next = text; next; text = next) {
     next = strchr(text, ' ');
     if (next) *next++ = 0;
-    tree.columns[tree.column_count++] = count_of(text);
+    size_t number = count_of(text);
+    if (counted) {
+      tree.answer_count = number;
+    } else {
+      tree.columns[tree.column_count++] = number;
+    }
+    counted = false;
   }
   return tree;
 }
@@ -178,12 +181,14 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
       if (!strcmp(to->joints[i], value)) fail(REFUSED, "joint %.60s is named twice", value);
     }
     to->joints[to->joint_count++] = value;
-  } else if (!to->of_no_path && (!strcmp(line, "axis") || !strcmp(line, "point"))) {
+  } else if (!to->of_no_path && !to->of_pairs && (!strcmp(line, "axis") || !strcmp(line, "point"))) {
     add_kept(to, value, *line == 'a');
   } else if (to->of_no_path && (!strcmp(line, "position") || !strcmp(line, "pose"))) {
     add_pose(to, value, !strcmp(line, "pose"));
   } else if (!strcmp(line, "cells") && to->of_no_path) {
-    to->trees[to->tree_count++] = tree_of(value);
+    to->trees[to->tree_count++] = tree_of(value, true);
+  } else if (!strcmp(line, "pair") && to->of_pairs) {
+    to->trees[to->tree_count++] = tree_of(value, false);
   } else if (!strcmp(line, "held")) {
     add_named(to->held, &to->held_count, named(value));
   } else if (!strcmp(line, "padding")) {
@@ -197,12 +202,17 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
 
 static void require_counts(const Certificate* certificate, const bool seen[ONCE]) {
   for (int i = 0; i <= WITNESSES; ++i) {
-    bool needed = i == INPUTS || (i >= GOALS) == certificate->of_no_path;
+    bool of_path = i < ANSWERS && !certificate->of_pairs;
+    bool needed =
+        i == INPUTS || (i >= GOALS ? certificate->of_no_path : !certificate->of_no_path && (of_path || i >= ANSWERS));
     if (seen[i] != needed) fail(REFUSED, "a line is missing, or is of another kind of certificate");
   }
   if (!certificate->joint_count) fail(REFUSED, "no joint is named");
-  if (certificate->of_no_path) {
-    if (seen[TOLERANCE]) fail(REFUSED, "a tolerance of no path");
+  if (seen[TOLERANCE] && (certificate->of_no_path || certificate->of_pairs)) fail(REFUSED, "a tolerance of no path");
+  if (certificate->of_pairs) {
+    if (certificate->clearance > 0 || certificate->padding_count) fail(REFUSED, "a distance between links");
+    if (!certificate->tree_count) fail(REFUSED, "no pair");
+  } else if (certificate->of_no_path) {
     if (!(certificate->goals + certificate->pose_count) || !certificate->tree_count)
       fail(REFUSED, "no goal, or no cells");
   } else {
@@ -272,15 +282,16 @@ Certificate* read_certificate(File file) {
   Certificate* to = take(1, sizeof *to);
   const char* text = (const char*)file.data;
   to->of_no_path = !strncmp(text, OF_NO_PATH, sizeof OF_NO_PATH - 1);
-  size_t size = to->of_no_path ? sizeof OF_NO_PATH - 1 : sizeof MAGIC - 1;
-  if (!to->of_no_path && strncmp(text, MAGIC, size) != 0) fail(REFUSED, "no certificate");
+  to->of_pairs = !strncmp(text, OF_PAIRS, sizeof OF_PAIRS - 1);
+  size_t size = (to->of_no_path ? sizeof OF_NO_PATH : to->of_pairs ? sizeof OF_PAIRS : sizeof MAGIC) - 1;
+  if (!to->of_no_path && !to->of_pairs && strncmp(text, MAGIC, size) != 0) fail(REFUSED, "no certificate");
   const char* end = strstr(text + size - 1, "\n\n");
   if (!end || end - text > LONGEST_HEADER) fail(REFUSED, "a header without end");
   size_t length = (size_t)(end - text);
   read_header(to, copied(text + size, length > size ? length - size : 0));
   const uint8_t* body = file.data + length + 2;
   uint64_t left = file.size - length - 2, packed = (to->answer_count + 2) / 3;
-  to->points = to->of_no_path ? 1 + to->goals : to->degree * to->motions + 1;
+  to->points = to->of_pairs ? 0 : to->of_no_path ? 1 + to->goals : to->degree * to->motions + 1;
   read_values(to, next_bytes(&body, &left, to->points, 8 * to->joint_count));
   to->answers = next_bytes(&body, &left, packed, 1);
   to->directions = next_bytes(&body, &left, to->direction_count, 12);

@@ -1,4 +1,4 @@
-/* A certificate of a path, or that there is none: its header, its points, and what follows them. */
+/* A certificate of a path, that there is none, or of pairs of links: its header, its points, and what follows them. */
 #ifndef EVENROAD_CERTIFICATE_H
 #define EVENROAD_CERTIFICATE_H
 
@@ -29,7 +29,8 @@ typedef struct {
   Pose pose;
 } PoseGoal;
 
-/* Cells of some columns of the points, and an answer to each; of a certificate that there is no path. */
+/* Cells of some columns of the points, and an answer to each; of a certificate that there is no path.  Of one of pairs:
+   the numbers of two bodies, and the columns along which cells are halved, one after the other. */
 typedef struct {
   size_t *columns, column_count, answer_count;
   const uint8_t* answers;
@@ -37,7 +38,7 @@ typedef struct {
 
 typedef struct {
   uint8_t digest[32];
-  bool of_no_path;
+  bool of_no_path, of_pairs;
   const char** joints;
   Named *held, *padding;
   size_t joint_count, held_count, padding_count;

@@ -56,14 +56,16 @@ static void check(const Asked* asked) {
   } else {
     proved = verify(inputs, certificate);
   }
-  if (asked->path && of_none) fail(REFUSED, "it proves that there is no path");
+  if (asked->path && (of_none || certificate->of_pairs)) fail(REFUSED, "it is about no path");
   if (asked->path) require_same_path(certificate, asked->path);
-  size_t last = certificate->points - 1;
-  require_end(certificate, "start", asked->start, 0, 1);
-  require_end(certificate, "goal", asked->goal, of_none ? 1 : last, of_none ? last : 1);
+  size_t points = certificate->points, last = points ? points - 1 : 0;
+  require_end(certificate, "start", asked->start, 0, points > 0);
+  require_end(certificate, "goal", asked->goal, of_none ? 1 : last, of_none ? last : points > 0);
   if (asked->folder) write_files(asked->folder, inputs->carried, inputs->carried_count);
   if (of_none) {
     print_no_path(&shown);
+  } else if (certificate->of_pairs) {
+    print_never(&proved);
   } else {
     print_proved(&proved);
   }

@@ -163,6 +163,16 @@ static void find_ranges(Model* model) {
   }
 }
 
+void require_range(const Model* model, size_t column) {
+  const double* range = model->ranges[column];
+  if (!(range[0] < range[1])) fail(REFUSED, "a range of nothing");
+  for (size_t k = 1; k < model->frame_count; ++k) {
+    const Frame* frame = model->frames + k;
+    bool turns = !frame->slides && frame->multiplier == rint(frame->multiplier);
+    if (frame->column == column && isinf(range[0]) && !turns) fail(REFUSED, "an endless joint does not come back");
+  }
+}
+
 static void require_limits(const Model* model) {
   const Certificate* certificate = model->certificate;
   for (size_t i = 0; i < certificate->points * certificate->joint_count; ++i) {
@@ -179,7 +189,7 @@ static void find_lengths(Model* model) {
   size_t joints = certificate->joint_count;
   model->extremes = certificate->values;
   model->extreme_count = certificate->points;
-  if (certificate->of_no_path) {
+  if (certificate->of_no_path || certificate->of_pairs) {
     double* ends = take(2 * joints, sizeof *ends);
     for (size_t i = 0; i < 2 * joints; ++i) {
       double end = model->ranges[i % joints][i / joints];

@@ -6,6 +6,8 @@
 #include "inputs.h"
 #include "nodes.h"
 
+enum { MOST_MOVING = 6 };
+
 /* A frame behind a joint that moves; frame 0 is the root's. */
 typedef struct {
   const Joint* joint;
@@ -33,12 +35,15 @@ typedef struct {
   Node* node;
 } Body;
 
-/* Two nodes that must stay apart: some bodies and the obstacles, or two bodies. */
+/* Two nodes that must stay apart: some bodies and the obstacles, or two bodies; of a certificate of pairs those of a
+   line, and the columns that move them against each other. */
 typedef struct {
   Node *first, *second;
   double margin;
   size_t a, b; /* bodies; of obstacles b is NONE, and `group` names the first body of a */
   bool apart;  /* as wholes, at some time */
+  const Tree* line;
+  size_t moving[MOST_MOVING], moving_count;
 } Pair;
 
 typedef struct {
@@ -56,6 +61,9 @@ typedef struct {
   size_t frame_count, pair_count;
   size_t body_count, all_count; /* all: with the obstacles, which are bodies of frame 0 behind those of the robot */
 } Model;
+
+/* Refuse a column without a range, and one that is endless and does not come back after a turn. */
+void require_range(const Model* model, size_t column);
 
 /* Where the link of a constraint or goal is; refuses a link that there is not. */
 const Place* place_of_link(const Model* model, const char* link);

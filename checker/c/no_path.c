@@ -73,12 +73,7 @@ static Axes axes_of(const Model* model, const Tree* tree) {
     axes.endless[i] = isinf(model->ranges[column][0]);
     axes.range[i][0] = axes.endless[i] ? -PI : model->ranges[column][0];
     axes.range[i][1] = axes.endless[i] ? PI : model->ranges[column][1];
-    if (!(axes.range[i][0] < axes.range[i][1])) fail(REFUSED, "a range of nothing");
-    for (size_t k = 1; k < model->frame_count; ++k) {
-      const Frame* frame = model->frames + k;
-      bool turns = !frame->slides && frame->multiplier == rint(frame->multiplier);
-      if (frame->column == column && axes.endless[i] && !turns) fail(REFUSED, "an endless joint does not come back");
-    }
+    require_range(model, column);
   }
   return axes;
 }

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "never.h"
+
 static Body* body_named(const Model* model, const char* name) {
   for (size_t i = 0; i < model->body_count; ++i) {
     if (!strcmp(model->bodies[i].name, name)) return model->bodies + i;
@@ -113,6 +115,10 @@ void find_pairs(Model* model) {
     body.solids[0] = take(1, sizeof **body.solids);
     *body.solids[0] = solid_of(&obstacle->shape, &obstacle->shape.pose);
     model->bodies[i] = body;
+  }
+  if (model->certificate->of_pairs) {
+    find_named_pairs(model);
+    return;
   }
   model->pairs = take(count + count * count / 2 + 1, sizeof *model->pairs);
   model->group = take(count + 1, sizeof *model->group);

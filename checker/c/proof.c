@@ -1,5 +1,7 @@
 #include "proof.h"
 
+#include "never.h"
+
 enum { MOST_HALVINGS = 40 };
 enum { HALVE_STRETCH, HALVE_FIRST, HALVE_SECOND, ALONG_CENTRES, ALONG_BY_BOXES, ALONG_BY_CORNERS };
 
@@ -49,14 +51,20 @@ void place_chain(const Model* model, size_t i, const Stretch* stretch, Moved* mo
   const Frame* frame = model->frames + i;
   place_chain(model, frame->parent, stretch, moved);
   size_t joints = certificate->joint_count, degree = certificate->degree;
+  Moved* to = moved + i;
+  to->stretch = stretch->number;
+  if (stretch->cell) {
+    to->rate = frame->multiplier * stretch->cell[frame->column][1];
+    to->fastest = fabs(to->rate);
+    place_frame(model, i, stretch->cell[frame->column][0], moved);
+    return;
+  }
   const double* points = certificate->values + stretch->motion * degree * joints + frame->column;
   double t = stretch->middle, p0 = points[0], p2 = points[degree * joints];
   double p1 = degree == 2 ? points[joints] : 0.5 * (p0 + p2);
-  Moved* to = moved + i;
   to->rate = frame->multiplier * 2 * ((1 - t) * (p1 - p0) + t * (p2 - p1));
   to->change = degree == 2 ? frame->multiplier * 2 * (p0 - 2 * p1 + p2) : 0;
   to->fastest = fabs(to->rate) + stretch->half * fabs(to->change);
-  to->stretch = stretch->number;
   place_frame(model, i, (1 - t) * (1 - t) * p0 + 2 * t * (1 - t) * p1 + t * t * p2, moved);
 }
 
@@ -181,18 +189,22 @@ static void halve(const Task* task, int answer, Task halves[2]) {
   }
 }
 
-/* Check a direction that separates the nodes of a task. */
+/* Check a direction that separates the nodes of a task: in a cell along each diagonal. */
 static void separate(Proof* proof, const Task* task, int answer) {
   const Certificate* certificate = proof->model->certificate;
   bool given = answer != ALONG_CENTRES;
-  place_chain(proof->model, task->first->frame, &proof->stretch, proof->moved);
-  place_chain(proof->model, task->second->frame, &proof->stretch, proof->moved);
-  if (given && proof->directions == certificate->direction_count) fail(REFUSED, "a direction is missing");
-  Vector normal = given ? direction_at(certificate, proof->directions++) : between_centres(proof->moved, task);
-  double gap = gap_along(proof, task, normal, answer != ALONG_BY_CORNERS);
-  if (!(gap > LEAST_GAP)) fail(REFUSED, "task %zu: a direction that does not separate (%.3g m)", proof->done, gap);
-  proof->smallest = fmin(proof->smallest, gap);
   Pair* pair = proof->model->pairs + task->number;
+  if (given && proof->directions == certificate->direction_count) fail(REFUSED, "a direction is missing");
+  Vector normal = given ? direction_at(certificate, proof->directions++) : (Vector){0, 0, 0};
+  for (size_t back = 0; !back || back < ((size_t)1 << pair->moving_count) >> 1; ++back) {
+    if (pair->line) begin_cell(proof->model, pair, (size_t)task->level, task->index, back, &proof->stretch);
+    place_chain(proof->model, task->first->frame, &proof->stretch, proof->moved);
+    place_chain(proof->model, task->second->frame, &proof->stretch, proof->moved);
+    if (!given) normal = between_centres(proof->moved, task);
+    double gap = gap_along(proof, task, normal, answer != ALONG_BY_CORNERS);
+    if (!(gap > LEAST_GAP)) fail(REFUSED, "task %zu: a direction that does not separate (%.3g m)", proof->done, gap);
+    proof->smallest = fmin(proof->smallest, gap);
+  }
   if (task->first == pair->first && task->second == pair->second) pair->apart = true;
 }
 
@@ -201,7 +213,7 @@ static void begin_stretch(Proof* proof, const Task* task) {
   Stretch* stretch = &proof->stretch;
   double middle = ldexp((double)task->index + 0.5, -task->level), half = ldexp(0.5, -task->level);
   if (stretch->motion == task->motion && stretch->middle == middle && stretch->half == half) return;
-  *stretch = (Stretch){task->motion, stretch->number + 1, middle, half};
+  *stretch = (Stretch){task->motion, stretch->number + 1, middle, half, NULL};
 }
 
 /* Answer all tasks that wait, and those that they make. */
@@ -216,7 +228,7 @@ static void answer_all(Proof* proof) {
       proof->waiting += 2;
       continue;
     }
-    begin_stretch(proof, task);
+    if (!certificate->of_pairs) begin_stretch(proof, task);
     if (task->first) {
       separate(proof, task, answer);
     } else {
@@ -250,9 +262,16 @@ double prove(Model* model) {
   proof.tasks = take(certificate->answer_count + 1, sizeof *proof.tasks);
   proof.moved = take(model->frame_count, sizeof *proof.moved);
   proof.moved[0].pose = identity();
-  begin(&proof, model->pair_count, true);
+  if (certificate->of_pairs) proof.stretch.cell = lowest_cell(model);
+  for (size_t i = 0; certificate->of_pairs && i < model->pair_count; ++i) {
+    if (proof.waiting == certificate->answer_count) fail(REFUSED, "tasks without an answer");
+    const Pair* pair = model->pairs + i;
+    proof.tasks[proof.waiting++] = (Task){.number = i, .first = pair->first, .second = pair->second};
+    answer_all(&proof);
+  }
+  if (!certificate->of_pairs) begin(&proof, model->pair_count, true);
   answer_all(&proof);
-  begin(&proof, certificate->kept_count, false);
+  if (certificate->kept_count) begin(&proof, certificate->kept_count, false);
   answer_all(&proof);
   if (proof.waiting != certificate->answer_count) fail(REFUSED, "answers without a task");
   if (proof.directions != certificate->direction_count) fail(REFUSED, "directions without a task");

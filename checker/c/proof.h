@@ -4,10 +4,12 @@
 
 #include "model.h"
 
-/* The part of a motion that is `half` to both sides of its middle. */
+/* The part of a motion that is `half` to both sides of its middle; or a diagonal of a cell, by the middle of each
+   column and half of its side. */
 typedef struct {
   size_t motion, number; /* of each that is begun, from 1 */
   double middle, half;
+  double (*cell)[2];
 } Stretch;
 
 /* A frame at one time, and how its joint moves it there, seen from the root. */

@@ -1,6 +1,6 @@
 #include "solids.h"
 
-#include "proof.h"
+#include "never.h"
 
 enum { PASSES, CROSSES, UNCLEAR };
 
@@ -121,7 +121,8 @@ static bool has_surface(const Node* node) {
 
 size_t require_outside(const Model* model) {
   Moved* moved = take(model->frame_count, sizeof *moved);
-  const Stretch start = {.number = 1};
+  Stretch start = {.number = 1};
+  if (model->certificate->of_pairs) start.cell = lowest_cell(model);
   moved[0].pose = identity();
   for (size_t i = 1; i < model->frame_count; ++i) place_chain(model, i, &start, moved);
   size_t opened = 0;

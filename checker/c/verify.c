@@ -52,6 +52,26 @@ static void end_list(bool begun) {
 }
 
 /* Print what no pair of the proof speaks of. */
+/* On which conditions all that is proved is so. */
+static void print_conditions(const Model* model) {
+  bool begun = false;
+  for (size_t i = 0; i < model->certificate->held_count; ++i) {
+    char value[32];
+    snprintf(value, sizeof value, " %g", model->certificate->held[i].value);
+    const char* item = joined(model->certificate->held[i].name, value, "");
+    print_item("that other joints are where they are held", item, &begun);
+  }
+  if (!begun) printf("  that other joints are where they are held: at 0");
+  printf("\n");
+  const Certificate* certificate = model->certificate;
+  if (certificate->robot || certificate->scene) {
+    printf("  that what the certificate carries is the robot, or the scene, that is meant: %s%s%s\n",
+           certificate->robot ? "robot" : "", certificate->robot && certificate->scene ? ", " : "",
+           certificate->scene ? "scene" : "");
+  }
+  printf("  that the robot is built, calibrated, placed and controlled as the files say: and when it is where\n");
+}
+
 static void print_not_claimed(const Model* model) {
   const Inputs* inputs = model->inputs;
   bool begun = false;
@@ -82,22 +102,7 @@ static void print_not_claimed(const Model* model) {
     print_item("allowed contacts", joined(inputs->allowed[i].obstacle, " with ", inputs->allowed[i].body), &begun);
   }
   end_list(begun);
-  begun = false;
-  for (size_t i = 0; i < model->certificate->held_count; ++i) {
-    char value[32];
-    snprintf(value, sizeof value, " %g", model->certificate->held[i].value);
-    const char* item = joined(model->certificate->held[i].name, value, "");
-    print_item("that other joints are where they are held", item, &begun);
-  }
-  if (!begun) printf("  that other joints are where they are held: at 0");
-  printf("\n");
-  const Certificate* certificate = model->certificate;
-  if (certificate->robot || certificate->scene) {
-    printf("  that what the certificate carries is the robot, or the scene, that is meant: %s%s%s\n",
-           certificate->robot ? "robot" : "", certificate->robot && certificate->scene ? ", " : "",
-           certificate->scene ? "scene" : "");
-  }
-  printf("  that the robot is built, calibrated, placed and controlled as the files say: and when it is where\n");
+  print_conditions(model);
 }
 
 static void print_distances(const Certificate* certificate) {
@@ -120,6 +125,38 @@ static void print_kept(const Kept* kept) {
   printf("\n");
 }
 
+static void print_pairs(const Proved* proved) {
+  const Model* model = proved->model;
+  printf("pairs proved apart (%zu):\n", model->pair_count);
+  for (size_t i = 0; i < model->pair_count; ++i) {
+    const Pair* pair = model->pairs + i;
+    printf("  %s", model->bodies[pair->a].name);
+    for (size_t k = pair->a + 1; pair->b == NONE && k < model->body_count; ++k) {
+      if (model->group[k] == pair->a) printf(" and %s", model->bodies[k].name);
+    }
+    printf(" - %s\n", pair->b == NONE ? "the obstacles" : model->bodies[pair->b].name);
+  }
+  if (model->certificate->of_pairs) {
+    printf("not claimed:\n  pairs that are not listed\n");
+    print_conditions(model);
+  } else {
+    print_not_claimed(model);
+  }
+  if (proved->opened) printf("  what is inside of surfaces with holes: %zu\n", proved->opened);
+}
+
+void print_never(const Proved* proved) {
+  const Model* model = proved->model;
+  size_t joints = model->certificate->joint_count;
+  printf("PROVED: pairs of links never touch, whatever the joints do\n");
+  for (size_t i = 0; i < joints; ++i) {
+    double low = model->extremes[i], high = model->extremes[joints + i];
+    printf("  %s: from %.6g to %.6g\n", model->certificate->joints[i], low, high);
+  }
+  printf("  smallest gap of a step of the proof: %.3g m\n", proved->smallest);
+  print_pairs(proved);
+}
+
 void print_proved(const Proved* proved) {
   const Model* model = proved->model;
   const Certificate* certificate = model->certificate;
@@ -134,17 +171,7 @@ void print_proved(const Proved* proved) {
   printf("  smallest gap of a step of the proof: %.3g m\n", proved->smallest);
   for (size_t i = 0; i < certificate->kept_count; ++i) print_kept(certificate->kept + i);
   if (certificate->tolerance > 0) printf("  every joint may be %g off the curves\n", certificate->tolerance);
-  printf("pairs proved apart (%zu):\n", model->pair_count);
-  for (size_t i = 0; i < model->pair_count; ++i) {
-    const Pair* pair = model->pairs + i;
-    printf("  %s", model->bodies[pair->a].name);
-    for (size_t k = pair->a + 1; pair->b == NONE && k < model->body_count; ++k) {
-      if (model->group[k] == pair->a) printf(" and %s", model->bodies[k].name);
-    }
-    printf(" - %s\n", pair->b == NONE ? "the obstacles" : model->bodies[pair->b].name);
-  }
-  print_not_claimed(model);
-  if (proved->opened) printf("  what is inside of surfaces with holes: %zu\n", proved->opened);
+  print_pairs(proved);
 }
 
 static void print_pose(const PoseGoal* goal) {

@@ -24,6 +24,7 @@ void require_end(const Certificate* certificate, const char* name, const char* s
 
 /* Print what was proved, about which bodies, and what is not claimed. */
 void print_proved(const Proved* proved);
+void print_never(const Proved* proved); /* of a certificate of pairs */
 void print_no_path(const NoPath* shown);
 
 #endif

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from tests.certificates.checker_in_c import OF_NO_PATH
 from tests.certificates.no_path import TIP, Place, at, flat_arm, posts
 from tests.certificates.no_path import Parts as NoPathParts
 from tests.certificates.written import Written, box_reach, parts_of, shelf
@@ -23,6 +22,7 @@ from evenroad.constraints import KeepInBox, KeepUpright
 from evenroad.constraints.constrained_world import kept_world
 from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import Inputs, read_inputs
+from evenroad_verify.no_path import MAGIC as OF_NO_PATH
 from evenroad_verify.no_path import read_no_path
 
 CONTACT = 2e-6

@@ -14,7 +14,7 @@ LIMIT = 3.1
 
 
 def arm(folder, radius, lengths=(1.0, 0.5), limit=LIMIT, kind="revolute"):
-    """Return a robot and its shapes: a ball of 0.2 m at the root, joints about z, and a ball at the end."""
+    """Return the links of an arm: a ball of 0.2 m at the root, joints about z, and a ball at the end."""
     ball = "<collision><geometry><sphere radius='{}'/></geometry></collision>"
     text = "<robot name='arm'><link name='base'>" + ball.format(0.2) + "</link>"
     for i, _ in enumerate(lengths):
@@ -26,14 +26,14 @@ def arm(folder, radius, lengths=(1.0, 0.5), limit=LIMIT, kind="revolute"):
         shape = ball.format(radius).replace("<geometry", f"<origin xyz='{lengths[i]} 0 0'/><geometry") if last else ""
         text += f"<link name='l{i}'>{shape}</link>"
     (folder / "arm.urdf").write_text(text + "</robot>")
-    return er.load_robot(folder / "arm.urdf"), read_robot(RobotFile(folder / "arm.urdf")).shapes
+    return Links(read_robot(RobotFile(folder / "arm.urdf")))
 
 
 @pytest.mark.parametrize(
     ("radius", "limit", "status"), [(0.29, LIMIT, "never"), (0.31, LIMIT, "touches"), (0.45, 2.5, "never")]
 )
 def test_a_folding_arm_touches_its_base_where_it_is_short_enough(radius, limit, status, tmp_path):
-    pair = decide_pair(Links(*arm(tmp_path, radius, limit=limit)), ("base", "l1"), "disabled", 20.0)
+    pair = decide_pair(arm(tmp_path, radius, limit=limit), ("base", "l1"), "disabled", 20.0)
     nearest = math.sqrt(1.25 + math.cos(limit)) - 0.2 - radius
     assert pair.status == status == ("never" if nearest > 0.0 else "touches")
     assert pair.joints == ("j0", "j1")
@@ -45,27 +45,27 @@ def test_a_folding_arm_touches_its_base_where_it_is_short_enough(radius, limit, 
 def test_three_joints_are_decided_in_cells(tmp_path):
     # The shortest distance of the end from the base is 1 - 0.3 - 0.3.
     lengths = (1.0, 0.3, 0.3)
-    assert decide_pair(Links(*arm(tmp_path, 0.1, lengths)), ("base", "l2"), "disabled", 60.0).status == "never"
-    touching = decide_pair(Links(*arm(tmp_path, 0.25, lengths)), ("base", "l2"), "disabled", 60.0)
+    assert decide_pair(arm(tmp_path, 0.1, lengths), ("base", "l2"), "disabled", 60.0).status == "never"
+    touching = decide_pair(arm(tmp_path, 0.25, lengths), ("base", "l2"), "disabled", 60.0)
     assert touching.status == "touches"
-    robot, _ = arm(tmp_path, 0.25, lengths)
-    at = robot.fk(touching.configuration, "l2") @ er.Pose((0.3, 0.0, 0.0))
+    at = er.load_robot(tmp_path / "arm.urdf").fk(touching.configuration, "l2") @ er.Pose((0.3, 0.0, 0.0))
     assert np.linalg.norm(at.xyz) <= 0.45 + 1e-9
 
 
 def test_without_time_a_pair_is_undecided(tmp_path):
-    robot, shapes = arm(tmp_path, 0.1, (1.0, 0.3, 0.3))
-    (pair,) = untested_pairs(robot, shapes, [("base", "l2", "disabled"), ("base", "l0", "no shape")][:1], 1e-9)
+    links = arm(tmp_path, 0.1, (1.0, 0.3, 0.3))
+    (pair,) = untested_pairs(links, [("base", "l2", "disabled"), ("base", "l0", "no shape")], 1e-9)
     assert pair.status == "undecided"
 
 
 def test_links_with_one_joint_between_them_are_adjacent(tmp_path):
-    pair = decide_pair(Links(*arm(tmp_path, 0.1, (0.5,))), ("base", "l0"), "neighbours", 5.0)
-    assert (pair.status, pair.adjacent, pair.lines) == ("never", True, 1)
-    robot, shapes = arm(tmp_path, 0.31, (0.5,), kind="continuous")
-    pair = decide_pair(Links(robot, shapes), ("base", "l0"), "neighbours", 5.0)
+    pair = decide_pair(arm(tmp_path, 0.1, (0.5,)), ("base", "l0"), "neighbours", 5.0)
+    assert (pair.status, pair.adjacent) == ("never", True)
+    assert pair.steps > 1
+    links = arm(tmp_path, 0.31, (0.5,), kind="continuous")
+    pair = decide_pair(links, ("base", "l0"), "neighbours", 5.0)
     assert (pair.status, pair.nearest) == ("touches", 0.0)
     reported = []
     pairs = [("base", "l0", "neighbours"), ("base", "nothing", "no shapes")]
-    assert untested_pairs(robot, shapes, pairs, 5.0, lambda *step: reported.append(step)) == [pair]
+    assert untested_pairs(links, pairs, 5.0, lambda *step: reported.append(step)) == [pair]
     assert reported == [(1, 1)]

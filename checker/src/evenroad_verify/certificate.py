@@ -72,6 +72,8 @@ class Certificate:
     """Digest of the file of the robot that it carries, None where it carries none; `scene` alike."""
     scene: str | None = None
     carried: tuple[bytes, ...] = ()
+    pairs: tuple[tuple[int, ...], ...] = ()
+    """Of a certificate of pairs: the numbers of two bodies, and the columns along which their cells are halved."""
 
     @property
     def start(self) -> Floats:
@@ -115,10 +117,16 @@ def _certificate(said: dict[str, list[str]], body: memoryview) -> Certificate:
     demand(np.isfinite(points).all() and np.abs(points).max() <= FARTHEST, "a waypoint is no number, or too large")
     first, last = points[:-degree:degree], points[degree::degree]
     middle = points[1::2] if degree == 2 else 0.5 * (first + last)
+    given = directions_of(table)
+    curves = np.stack([first, middle, last], axis=1)
+    return Certificate(**head, curves=curves, answers=unpacked(packed, answers), directions=given)
+
+
+def directions_of(table: memoryview) -> Floats:
+    """Return the directions of a table, (d, 3)."""
     given = np.frombuffer(table, "<f4").reshape(-1, 3).astype(float)
     demand(np.isfinite(given).all() and not (np.abs(given) > 2.0).any(), "a direction is no number, or too long")
-    curves = np.stack([first, middle, last], axis=1)
-    return Certificate(**head, curves=curves, answers=_unpacked(packed, answers), directions=given)
+    return given
 
 
 def head_of(said: dict[str, list[str]], once: tuple[str, ...], others: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -204,7 +212,7 @@ def _named(lines: list[str]) -> dict[str, float]:
     return {name: number(value) for value, _, name in pairs}
 
 
-def _unpacked(data: memoryview, count: int) -> npt.NDArray[np.uint8]:
+def unpacked(data: memoryview, count: int) -> npt.NDArray[np.uint8]:
     """Return `count` answers of 0 to 5, of which a byte holds three."""
     packed = np.frombuffer(data, np.uint8)
     demand(not (packed > 215).any(), "an answer is unknown")

@@ -16,6 +16,8 @@ from evenroad_verify.claim import Claim, Inputs, claim_of, read_inputs
 from evenroad_verify.errors import BadInput, Floats, Refused, demand, numbers
 from evenroad_verify.no_path import MAGIC as OF_NO_PATH
 from evenroad_verify.no_path import Shown, read_no_path, verify_no_path
+from evenroad_verify.pairs import MAGIC as OF_PAIRS
+from evenroad_verify.pairs import read_pairs, verify_pairs
 from evenroad_verify.paths import require_same_path
 from evenroad_verify.proof import prove
 from evenroad_verify.solids import require_outside
@@ -45,6 +47,15 @@ def verify(certificate: bytes, inputs: Inputs) -> Proved:
         return Proved(read, claim, least, require_outside(claim, read, tasks))
 
 
+def verify_all(certificate: bytes, inputs: Inputs) -> list[str]:
+    """Return what is printed of a certificate that is accepted; Refused, with the reason, if it is not."""
+    if certificate.startswith(OF_NO_PATH):
+        return _lines_of_no_path(verify_no_path(certificate, inputs))
+    if certificate.startswith(OF_PAIRS):
+        return _lines_of_pairs(Proved(*verify_pairs(certificate, inputs)))
+    return _lines(verify(certificate, inputs))
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """Check a certificate; return 0 if it is accepted, 1 if it is refused, 2 if an input cannot be read."""
     parser = argparse.ArgumentParser(prog="evenroad-verify", description="Check a proof about the paths of a robot.")
@@ -63,17 +74,17 @@ def main(words: Sequence[str] | None = None) -> int:
     packages = {name: Path(folder) for name, _, folder in (each.partition("=") for each in asked.package)}
     try:
         data = asked.certificate.read_bytes()
-        is_of_path = not data.startswith(OF_NO_PATH)
-        if is_of_path:
-            carrier = read_certificate(data)
-            goals = carrier.curves[-1:, 2]
-        else:
+        is_of_path = not data.startswith((OF_NO_PATH, OF_PAIRS))
+        if data.startswith(OF_NO_PATH):
             of_none = read_no_path(data)
             carrier, goals = of_none.terminals, of_none.terminals.curves[: of_none.goals, 2]
+        else:
+            carrier = read_certificate(data) if is_of_path else read_pairs(data)
+            goals = carrier.curves[-1:, 2]
         inputs = read_inputs(asked.robot, asked.scene, asked.srdf, packages, carrier)
-        lines = _lines(verify(data, inputs)) if is_of_path else _lines_of_no_path(verify_no_path(data, inputs))
+        lines = verify_all(data, inputs)
         if asked.path is not None:
-            demand(is_of_path, "it proves that there is no path")
+            demand(is_of_path, "it is about no path")
             require_same_path(carrier, asked.path)
         _require_end("start", asked.start, carrier.curves[:1, 0])
         _require_end("goal", asked.goal, goals)
@@ -153,7 +164,7 @@ def _row(values: Floats) -> str:
 
 def _lines(proved: Proved) -> list[str]:
     """Return what is printed of an accepted certificate."""
-    read, claim = proved.certificate, proved.claim
+    read = proved.certificate
     straight = np.abs(read.curves[:, 1] - 0.5 * (read.curves[:, 0] + read.curves[:, 2])).max() < 1e-12
     kind = "straight motions" if straight else "curves"
     lines = [f"PROVED: {len(read.curves)} {kind} touch nothing{_kept(read)}"]
@@ -166,10 +177,24 @@ def _lines(proved: Proved) -> list[str]:
         lines.append(f"  the {'axis' if kept.is_axis else 'point'} {_row(kept.part)} of {kept.link} is within {within}")
     if read.tolerance:
         lines.append(f"  every joint may be {read.tolerance:g} off the curves")
-    lines.append(f"pairs proved apart ({len(claim.pairs)}):")
-    lines += [f"  {first} - {second}" for first, second in (pair.names for pair in claim.pairs)]
+    return lines + _lines_of_claim(proved)
+
+
+def _lines_of_pairs(proved: Proved) -> list[str]:
+    """Return what is printed of an accepted certificate of pairs."""
+    lines = ["PROVED: pairs of links never touch, whatever the joints do"]
+    for name, low, high in zip(proved.certificate.joints, *proved.certificate.curves[0, [0, 2]], strict=True):
+        lines.append(f"  {name}: from {low:.6g} to {high:.6g}")
+    lines.append(f"  smallest gap of a step of the proof: {proved.least:.3g} m")
+    return lines + _lines_of_claim(proved)
+
+
+def _lines_of_claim(proved: Proved) -> list[str]:
+    pairs, silent = proved.claim.pairs, proved.claim.silent
+    lines = [f"pairs proved apart ({len(pairs)}):"]
+    lines += [f"  {first} - {second}" for first, second in (pair.names for pair in pairs)]
     lines.append("not claimed:")
-    lines += [f"  {line}" for line in claim.silent]
+    lines += [f"  {line}" for line in silent]
     if proved.opened:
         lines.append(f"  what is inside of surfaces with holes: {proved.opened}")
     return lines

@@ -122,7 +122,7 @@ def verify_no_path(data: bytes, inputs: Inputs) -> Shown:
         most = np.abs(frames.factor * ranges.T[:, frames.column] + frames.offset).max(0)
         slides = np.where(frames.slides, most, 0.0)
         for columns, answers in read.parts:
-            cells = cells_of(_ranges(frames, ranges, columns, terminals.joints), answers)
+            cells = cells_of(ranges_of_cells(frames, ranges, columns, terminals.joints), answers)
             witness, shut = cells.answer - 1 - len(columns), cells.answer > len(columns)
             demand((witness < len(table)).all(), "an unknown witness")
             for number in np.unique(witness[shut]):
@@ -160,7 +160,7 @@ def _inside(cells: Cells, terminals: Certificate) -> Bools:
     return reached(cells, start)
 
 
-def _ranges(frames: Frames, ranges: Floats, columns: Ints, names: tuple[str, ...]) -> Ranges:
+def ranges_of_cells(frames: Frames, ranges: Floats, columns: Ints, names: tuple[str, ...]) -> Ranges:
     """Return the ranges of columns: as far as the joints may go, or one turn."""
     low, high = ranges[columns].T
     endless = np.isinf(low)

@@ -27,23 +27,33 @@ def prove(claim: Claim, certificate: Certificate) -> tuple[float, Ints]:
     kept, how, left = expand(claim.nodes, _first(certificate, none), left)
     demand(not len(left), "there are answers without a task")
     demand((how == CENTRES).all(), "an answer to a constraint is a direction")
-    given = np.cumsum(answers > CENTRES) - 1
-    demand(int((answers > CENTRES).sum()) == len(certificate.directions), "directions are missing or left over")
-    directions = np.concatenate([certificate.directions, np.zeros((1, 3))])  # of those without one any will do
-    keep, least = np.array([pair.keep for pair in claim.pairs]), np.inf
     motions = Motions(claim, certificate)
+    least, directions = require_apart(claim, motions, tasks, answers, certificate.directions)
+    demand(not len(directions), "there are directions left over")
+    for number, each in enumerate(certificate.kept):
+        excess = motions.excess(kept[kept[:, PAIR] == number], each)
+        demand((excess <= LEAST).all(), f"{each.link} is not proved to keep its constraint")
+    return least, tasks
+
+
+def require_apart(
+    claim: Claim, motions: Motions, tasks: Ints, answers: Ints, directions: Floats
+) -> tuple[float, Floats]:
+    """Return the least gap of tasks [m], and the directions left over; Refused where one does not separate."""
+    given = np.cumsum(answers > CENTRES) - 1
+    count, least = int((answers > CENTRES).sum()), np.inf
+    demand(count <= len(directions), "a direction is missing")
+    keep = np.array([pair.keep for pair in claim.pairs])
+    some_direction = np.concatenate([directions[:count], np.zeros((1, 3))])  # of those without one any will do
     for start in range(0, len(tasks), _AT_ONCE):
         some = slice(start, start + _AT_ONCE)
-        gap = motions.gaps(tasks[some], answers[some], directions[given[some]]) - keep[tasks[some, PAIR]]
+        gap = motions.gaps(tasks[some], answers[some], some_direction[given[some]]) - keep[tasks[some, PAIR]]
         worst = int(gap.argmin())
         if not gap[worst] > LEAST:  # nor if it is no number
             first, second = claim.pairs[tasks[start + worst, PAIR]].names
             demand(False, f"motion {tasks[start + worst, MOTION]}: {first} and {second} are not proved apart")
         least = min(least, float(gap[worst]))
-    for number, each in enumerate(certificate.kept):
-        excess = motions.excess(kept[kept[:, PAIR] == number], each)
-        demand((excess <= LEAST).all(), f"{each.link} is not proved to keep its constraint")
-    return least, tasks
+    return least, directions[count:]
 
 
 def _first(certificate: Certificate, pairs: Ints) -> Ints:
@@ -140,12 +150,15 @@ class Motions:
 
     def _middle_states(self, key: Ints) -> tuple[Floats, ...]:
         """Return rates and bends of joints, poses of frames, and how joints turn and shift the root's frame."""
-        frames, share = self._frames, ((key & ((1 << FINEST + 1) - 1)) / 2.0 ** (FINEST + 1))[:, None]
+        column, factor, share = self._frames.column, self._frames.factor, shares(key) / 2.0 ** (FINEST + 1)
         first, middle, last = np.moveaxis(self._curves[key >> FINEST + 1], 1, 0)
+        share = share[:, None]
         q = (1 - share) ** 2 * first + 2 * share * (1 - share) * middle + share**2 * last
-        rate = (2 * (1 - share) * (middle - first) + 2 * share * (last - middle))[:, frames.column] * frames.factor
-        bend = np.abs(2 * (last - 2 * middle + first))[:, frames.column] * np.abs(frames.factor)
-        rotation, origin, axes = frames.at(q)
+        rate = (2 * (1 - share) * (middle - first) + 2 * share * (last - middle))[:, column] * factor
+        return self._states(q, rate, np.abs(2 * (last - 2 * middle + first))[:, column] * np.abs(factor))
+
+    def _states(self, q: Floats, rate: Floats, bend: Floats) -> tuple[Floats, ...]:
+        rotation, origin, axes = self._frames.at(q)
         turning = np.where(self._slides[:, None], 0.0, rate[:, :, None] * axes)
         along = np.where(self._slides[:, None], rate[:, :, None] * axes, np.cross(origin[:, 1:], turning))
         return rate, bend, rotation, origin, turning, along
@@ -169,3 +182,8 @@ class Motions:
 def _middles(tasks: Ints) -> Ints:
     """Return one number for the motion and the middle of each stretch."""
     return np.asarray(tasks[:, MOTION] << FINEST + 1 | (2 * tasks[:, NUMBER] + 1) << FINEST - tasks[:, LEVEL])
+
+
+def shares(key: Ints) -> Ints:
+    """Return the parts of motions that numbers of `_middles` have."""
+    return np.asarray(key & ((1 << FINEST + 1) - 1))

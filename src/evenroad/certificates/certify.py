@@ -84,19 +84,26 @@ class OfFiles:
 
     def write(self, file: Path, magic: str, more: list[str], tables: bytes) -> None:
         """Write a certificate: a header with some lines more, tables, and the files that it carries."""
-        digest, beside = hashlib.sha256(), self.beside
-        for files in self.files:
-            digest.update(files.digests)
-        lines = [f"inputs {digest.hexdigest()}", *(f"joint {name}" for name in beside.joints)]
-        for name, files in zip(("robot", "scene"), self.files, strict=True):
-            lines += [f"{name} {files.made_of}"] if files.carried else []
-        lines += [f"held {value!r} {name}" for name, value in beside.held.items()]
-        lines += [f"clearance {beside.clearance!r}"] if beside.clearance else []
-        lines += [f"padding {value!r} {link}" for link, value in beside.padding.items() if value]
-        carried = [each for files in self.files if files.carried for each in files.contents]
-        with atomic_write(file) as stream:
-            stream.write((magic + "\n".join([*lines, *more]) + "\n\n").encode() + tables)
-            stream.write(b"".join(len(each).to_bytes(8, "little") + each for each in carried))
+        write_certificate(file, magic, self.files, self.beside, more, tables)
+
+
+def write_certificate(
+    file: Path, magic: str, about: Sequence[Files], beside: Claimed, more: list[str], tables: bytes
+) -> None:
+    """Write a certificate about files of a robot and a scene, and what is claimed beside them."""
+    digest = hashlib.sha256()
+    for files in about:
+        digest.update(files.digests)
+    lines = [f"inputs {digest.hexdigest()}", *(f"joint {name}" for name in beside.joints)]
+    for name, files in zip(("robot", "scene"), about, strict=True):
+        lines += [f"{name} {files.made_of}"] if files.carried else []
+    lines += [f"held {value!r} {name}" for name, value in beside.held.items()]
+    lines += [f"clearance {beside.clearance!r}"] if beside.clearance else []
+    lines += [f"padding {value!r} {link}" for link, value in beside.padding.items() if value]
+    carried = [each for files in about if files.carried for each in files.contents]
+    with atomic_write(file) as stream:
+        stream.write((magic + "\n".join([*lines, *more]) + "\n\n").encode() + tables)
+        stream.write(b"".join(len(each).to_bytes(8, "little") + each for each in carried))
 
 
 _known: WeakKeyDictionary[ArmWorld, tuple[ReadRobot, tuple[tuple[str, float], ...], OfFiles]] = WeakKeyDictionary()

@@ -11,6 +11,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.certificates.cells import Ranges, separate, tree_of
 from evenroad.certificates.certify import PathLike, Sources, claimed_by
+from evenroad.certificates.claim import Tree
 from evenroad.certificates.plain import ENDLESS
 from evenroad.certificates.pruned import LEFT_OPEN, pruned
 from evenroad.certificates.targets import Target, target_of
@@ -97,7 +98,7 @@ def _part(
     others = np.ones(len(start), dtype=np.bool_)
     others[list(columns)] = False
     pairs = np.flatnonzero(~witnesses.columns[:, others].any(axis=1) & witnesses.columns.any(axis=1))
-    ranges = _ranges(witnesses, urdf, scene, columns)
+    ranges = ranges_of(witnesses.tree, witnesses.robot.group, urdf, scene, columns)
     if ranges is None or not len(pairs):
         return None, none
     tree = tree_of(witnesses, ranges, pairs, tuple(targets))
@@ -108,12 +109,14 @@ def _part(
     return Part(ranges.columns, pruned(tree, start, goals[apart[: len(goals)]], shown)), apart
 
 
-def _ranges(witnesses: Witnesses, urdf: RobotDescription, scene: Scene, columns: tuple[int, ...]) -> Ranges | None:
+def ranges_of(
+    tree: Tree, joints: Sequence[str], urdf: RobotDescription, scene: Scene, columns: tuple[int, ...]
+) -> Ranges | None:
     """Return the ranges of some columns as a checker has them; None where a joint has none."""
     low, high = np.full(len(columns), -np.inf), np.full(len(columns), np.inf)
     for i, column in enumerate(columns):
-        low[i], high[i] = _range(urdf, scene, witnesses.robot.group[column])
-        moved = [(joint, factor) for _, joint, _, at, factor, _ in witnesses.tree.moved if at == column]
+        low[i], high[i] = _range(urdf, scene, joints[column])
+        moved = [(joint, factor) for _, joint, _, at, factor, _ in tree.moved if at == column]
         if np.isinf(low[i]) and any(joint.kind == "prismatic" or factor % 1.0 for joint, factor in moved):
             return None
         if low[i] >= high[i]:

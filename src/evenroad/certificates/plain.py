@@ -80,8 +80,9 @@ def plain_robot(urdf: RobotDescription) -> tuple[bytes, tuple[bytes, ...]]:
         ET.SubElement(element, "child", link=joint.child)
         _origin(element, joint.origin)
         ET.SubElement(element, "axis", xyz=" ".join(map(repr, joint.axis)))
-        if np.isfinite(joint.upper - joint.lower):
-            ET.SubElement(element, "limit", lower=repr(joint.lower), upper=repr(joint.upper))
+        lower, upper = joint.stops
+        if np.isfinite(upper - lower):
+            ET.SubElement(element, "limit", lower=repr(lower), upper=repr(upper))
         if joint.mimic is not None:
             follows = joint.mimic
             rule = {"multiplier": repr(follows.multiplier), "offset": repr(follows.offset)}

@@ -64,17 +64,28 @@ class ReadRobot:
         return self._files[key]
 
     def _files_of(self, world: ArmWorld, held: frozenset[str], bodied: tuple[str, ...]) -> RobotFiles:
-        sources, said = self._sources, self.disabled
+        said = self.disabled
         untested = frozenset[frozenset[str]]() if said else _untested(world.robot, bodied)
         if untested <= neighbours(self.urdf, {shape.link for shape in self.urdf.shapes}):
             untested = frozenset()
         if self._is_plain({*world.robot.group, *held}) and not untested:
-            meshes = [each.read_bytes() for each in self.meshes if isinstance(each, Path)]
-            of_pairs = [self.srdf or b""] if sources.embed or self.srdf is not None else []
-            return RobotFiles((self.data, *of_pairs, *meshes), digest_of(self.data) if sources.embed else None, said)
+            return self._as_it_is(self.srdf, said)
         text, meshes_of = plain_robot(self.urdf)
         srdf = self.srdf if said and self.srdf else plain_srdf(self.urdf.name, untested)
         return RobotFiles((text, srdf, *meshes_of), digest_of(self.data), said or untested or None)
+
+    def without_srdf(self, named: set[str]) -> RobotFiles:
+        """Return the files of the robot, for a certificate that names some joints, and to which no SRDF matters."""
+        if self._is_plain(named):
+            return self._as_it_is(None, None)
+        text, meshes_of = plain_robot(self.urdf)
+        return RobotFiles((text, b"", *meshes_of), digest_of(self.data))
+
+    def _as_it_is(self, srdf: bytes | None, said: frozenset[frozenset[str]] | None) -> RobotFiles:
+        embed = self._sources.embed
+        meshes = [each.read_bytes() for each in self.meshes if isinstance(each, Path)]
+        of_pairs = [srdf or b""] if embed or srdf is not None else []
+        return RobotFiles((self.data, *of_pairs, *meshes), digest_of(self.data) if embed else None, said)
 
     def _is_plain(self, named: set[str]) -> bool:
         """Return whether a checker reads the file of the robot as it is, in a certificate that names some joints."""

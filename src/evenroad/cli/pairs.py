@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from json import dumps
+from pathlib import Path
 
 from evenroad._checks import require_positive
 from evenroad._terminal import print_table, progress_shown
-from evenroad.certificates.link_pairs import LinkPair, untested_pairs
+from evenroad.certificates.certify_pairs import certify_pairs
+from evenroad.certificates.link_pairs import LinkPair, Links, untested_pairs
+from evenroad.certificates.robot_files import ReadRobot
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
 from evenroad.errors import InvalidValue, Undecided
 from evenroad.loading.groups import EVERY
-from evenroad.loading.load import read_robot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +34,10 @@ class Pairs(RobotOptions):
     """A URDF, xacro or MJCF file, or a name: ur5, arm7; with the extra [robots] panda and others."""
     seconds: float = 60.0
     """Time for the proofs of all pairs, > 0; reading the files is not counted."""
+    certificate: Path | None = None
+    """Also write a certificate of the pairs that never touch, which `evenroad-verify` checks."""
+    embed: bool = False
+    """The certificate carries the robot's files."""
     json: bool = False
     """Print JSON instead of a table."""
 
@@ -45,27 +51,35 @@ class Pairs(RobotOptions):
         except Undecided:
             # No group is planned for here.
             model = replace(self, group=(EVERY,)).read_robot(self.robot)
-        assert model.file is not None
-        shapes = read_robot(model.file).shapes
+        read = ReadRobot(self.sources(self.robot, None, self.embed), ())
+        links = Links(read.urdf)
         with progress_shown("pairs") as progress:
-            pairs = untested_pairs(model.robot, shapes, model.dropped, self.seconds, progress)
+            pairs = untested_pairs(links, model.dropped, self.seconds, progress)
         never = all(pair.status == "never" for pair in pairs if not pair.adjacent)
+        if self.certificate is not None:
+            certify_pairs(read, links, pairs, self.certificate)
         if self.json:
             record = {"robot": self.robot, "srdf": None if self.srdf is None else str(self.srdf)}
-            print(dumps(record | {"pairs": [asdict(pair) for pair in pairs]}, indent=2))
+            print(dumps(record | {"pairs": [_record(pair) for pair in pairs]}, indent=2))
             return int(not never)
         rows = [(" ".join(pair.links), pair.reason, str(len(pair.joints)), _said(pair)) for pair in pairs]
         print_table(rows or [("none", "", "", "")], ("links", "not tested", "joints between", "ever in contact"))
         return int(not never)
 
 
+def _record(pair: LinkPair) -> dict[str, object]:
+    """Return a pair as plain JSON values."""
+    keys = ("links", "reason", "status", "joints", "configuration", "nearest", "steps")
+    return {key: getattr(pair, key) for key in keys}
+
+
 def _said(pair: LinkPair) -> str:
     """Return in words what is known of a pair."""
     adjacent = " (adjacent)" if pair.adjacent else ""
     if pair.status == "never":
-        return f"never, proved on {pair.lines} lines{adjacent}" if pair.joints else "never: fixed to each other"
+        return f"never, proved in {pair.steps} steps{adjacent}" if pair.joints else "never: fixed to each other"
     where = ", ".join(f"{name}={value:.6g}" for name, value in pair.configuration.items())
     if pair.status == "touches":
         return (f"at {where}" if pair.joints else "always: fixed to each other") + adjacent
     near = "" if pair.nearest is None else f", {pair.nearest:.3g} m apart at {where}"
-    return f"undecided after {pair.lines} lines{near}"
+    return f"undecided{near}"

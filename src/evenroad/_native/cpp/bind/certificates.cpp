@@ -127,6 +127,29 @@ std::optional<Answers> write_answers(const JointTables& moving, nb::sequence pai
   return Answers{as_row(std::move(written.answers)), as_rows(std::move(written.directions), 3), written.touch};
 }
 
+/// Write the answers for all values of the joints in a box, which is halved along one of `columns` after another.
+std::optional<Answers> write_box(const JointTables& moving, const Pair& pair, nb::handle low, nb::handle high,
+                                 nb::handle columns, std::int64_t most) {
+  require_below(most, std::size_t{1} << 24, "most");
+  const Floats least(low, "low"), greatest(high, "high");
+  const Array<const std::int64_t, 1> halved(columns, "columns");
+  greatest.of_shape({least.size()});
+  require(halved.size() <= 40, "columns must be 40 at most");
+  require_below(std::span(moving.column), least.size(), "columns");
+  require_below(halved.span(), least.size(), "columns");
+  for (const auto& node : {pair.first, pair.second}) require_below(node->frame, moving.parent.size() + 1, "frames");
+  Written written;
+  try {
+    written = without_gil([&] {
+      Motions motions(moving.frames(), {least.span(), greatest.span(), halved.span()});
+      return write(motions, 1, std::span(&pair, 1), {}, static_cast<std::size_t>(most));
+    });
+  } catch (const TooLong&) {
+    return std::nullopt;
+  }
+  return Answers{as_row(std::move(written.answers)), as_rows(std::move(written.directions), 3), written.touch};
+}
+
 }  // namespace
 
 void add_certificates(nb::module_& module) {
@@ -166,6 +189,8 @@ void add_certificates(nb::module_& module) {
       },
       "rows"_a.none(), "before"_a);
   part.def("write_answers", &write_answers, "joint_tables"_a, "pairs"_a, "paths"_a, "most"_a);
+  part.def("write_box", &write_box, "joint_tables"_a, "pair"_a, "low"_a.none(), "high"_a.none(), "columns"_a.none(),
+           "most"_a);
 }
 
 }  // namespace evenroad::bind

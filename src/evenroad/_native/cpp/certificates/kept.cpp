@@ -30,7 +30,7 @@ Keeping keeping(Motions& motions, const Kept& kept, const Task& task) {
   const Carried carried = motions.carried(task, kept.frame, reach);
   const Moving& moving = carried.moving;
   const Vector from = is_axis ? Vector{} : moving.origin, own = placed(moving, kept.own) - moving.origin + from;
-  const Vector velocity = cross(moving.spin, own) + (is_axis ? Vector{} : moving.drift);
+  const Vector velocity = cross(moving.screw.spin, own) + (is_axis ? Vector{} : moving.screw.drift);
   const double accelerated = is_axis ? carried.turning * carried.turning + carried.bending : carried.stray;
   const double strayed = 0.5 * carried.half * carried.half * accelerated + (is_axis ? carried.twisted : carried.loose);
   // A convex function is largest at an end.

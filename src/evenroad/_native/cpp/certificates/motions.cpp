@@ -48,8 +48,6 @@ Vector as_seen(const Moving& moving, const Vector& functional) {
 Motions::Motions(const Frames& frames, const Curves& curves, double tolerance)
     : frames_(frames), curves_(curves), tolerance_(tolerance), chains_(1) {
   for (std::size_t k = 0; k < frames.count(); k++) {
-    chains_.push_back(chains_[static_cast<std::size_t>(frames.parent[k])]);
-    chains_.back().push_back(k);
     double most = 0.0;
     for (std::size_t curve = 0; curve < curves.count(); curve++) {
       for (std::size_t control = 0; control < 3; control++) {
@@ -57,9 +55,43 @@ Motions::Motions(const Frames& frames, const Curves& curves, double tolerance)
         most = std::max(most, std::abs(frames.factor[k] * q + frames.offset[k]));
       }
     }
-    shift_.push_back(std::sqrt(squared_length(row_of(frames.shift, k))));
-    slide_.push_back(frames.slides[k] != 0 ? most + std::abs(frames.factor[k]) * tolerance : 0.0);
+    add_frame(most + std::abs(frames.factor[k]) * tolerance);
   }
+}
+
+Motions::Motions(const Frames& frames, const Ranges& box) : frames_(frames), box_(box), chains_(1) {
+  for (std::size_t k = 0; k < frames.count(); k++) {
+    const auto c = static_cast<std::size_t>(frames.column[k]);
+    const double low = frames.factor[k] * box.low[c], high = frames.factor[k] * box.high[c];
+    add_frame(std::max(std::abs(low + frames.offset[k]), std::abs(high + frames.offset[k])));
+  }
+}
+
+/// Add the next frame, whose joint slides by `most` if it does.
+void Motions::add_frame(double most) {
+  const std::size_t k = slide_.size();
+  chains_.push_back(chains_[static_cast<std::size_t>(frames_.parent[k])]);
+  chains_.back().push_back(k);
+  shift_.push_back(std::sqrt(squared_length(row_of(frames_.shift, k))));
+  slide_.push_back(frames_.slides[k] != 0 ? most : 0.0);
+}
+
+std::int64_t Motions::deepest() const {
+  constexpr std::int64_t OF_MOTIONS = 26;
+  return in_box() ? static_cast<std::int64_t>(box_.columns.size()) : OF_MOTIONS;
+}
+
+/// Find the ends and the middle of a cell.
+void Motions::find_cell(const Task& task) {
+  low_.assign(box_.low.begin(), box_.low.end());
+  high_.assign(box_.high.begin(), box_.high.end());
+  for (std::int64_t level = 0; level < task.level; level++) {
+    const auto c = static_cast<std::size_t>(box_.columns[static_cast<std::size_t>(level)]);
+    const double middle = 0.5 * (low_[c] + high_[c]);
+    (task.number >> (task.level - 1 - level) & 1 ? low_ : high_)[c] = middle;
+  }
+  middle_.clear();
+  for (std::size_t c = 0; c < low_.size(); c++) middle_.push_back(0.5 * (low_[c] + high_[c]));
 }
 
 const Motions::State& Motions::state(const Task& task) {
@@ -72,9 +104,14 @@ const Motions::State& Motions::state(const Task& task) {
   const std::size_t count = frames_.count();
   state.turn.reserve(count + 1), state.origin.reserve(count + 1);
   state.turning.reserve(count), state.along.reserve(count), state.rate.reserve(count), state.bend.reserve(count);
-  const double s = (2.0 * static_cast<double>(task.number) + 1.0) * task.half();
+  const bool in_cell = in_box();
+  if (in_cell) find_cell(task);
+  // A cell is the whole of its diagonal.
+  const double s = in_cell ? 0.5 : (2.0 * static_cast<double>(task.number) + 1.0) * task.half();
   const auto motion = static_cast<std::size_t>(task.motion);
-  const auto first = curves_.at(motion, 0), middle = curves_.at(motion, 1), last = curves_.at(motion, 2);
+  const std::span<const double> first = in_cell ? low_ : curves_.at(motion, 0),
+                                middle = in_cell ? middle_ : curves_.at(motion, 1),
+                                last = in_cell ? high_ : curves_.at(motion, 2);
   state.turn.push_back({Vector{1.0, 0.0, 0.0}, Vector{0.0, 1.0, 0.0}, Vector{0.0, 0.0, 1.0}});
   state.origin.push_back({});
   for (std::size_t k = 0; k < frames_.count(); k++) {
@@ -119,7 +156,7 @@ Carried Motions::carried(const State& at, double half, std::int64_t frame, std::
     carried.stray += arm * (fastest * (2.0 * carried.turning + turns) + at.bend[k]);
     carried.loose += arm * off;
     if (!slides) carried.turning += turns, carried.bending += at.bend[k], carried.twisted += off;
-    moving.spin = moving.spin + at.turning[k], moving.drift = moving.drift + at.along[k];
+    moving.screw = {moving.screw.spin + at.turning[k], moving.screw.drift + at.along[k]};
   }
   return carried;
 }
@@ -131,7 +168,7 @@ Carried Motions::carried(const Task& task, std::int64_t frame, double reach) {
 Moved Motions::moved(const Task& task) {
   const State& at = state(task);
   Moved moved;
-  moved.half = task.half();
+  moved.half = in_box() ? 0.5 : task.half();
   const Node* const both[2] = {task.first, task.second};
   const auto &chain = chains_[static_cast<std::size_t>(both[0]->frame)],
              &other = chains_[static_cast<std::size_t>(both[1]->frame)];
@@ -144,23 +181,61 @@ Moved Motions::moved(const Task& task) {
     moved.nodes[side].node = &node;
     moved.stray += one.stray, moved.loose += one.loose;
   }
+  if (in_box()) add_diagonals(at, task, shared, moved);
   return moved;
 }
 
-double gap(const Moved& moved, const Vector& direction, By by) {
+/// Add how the nodes of a task move along the diagonals of a cell but the first: some of the columns go backwards.
+void Motions::add_diagonals(const State& at, const Task& task, std::size_t shared, Moved& moved) const {
+  const Node* const both[2] = {task.first, task.second};
+  std::vector<std::int64_t> columns;
+  for (const Node* node : both) {
+    const auto& chain = chains_[static_cast<std::size_t>(node->frame)];
+    for (std::size_t i = shared; i < chain.size(); i++) {
+      const std::int64_t column = frames_.column[chain[i]];
+      if (std::find(columns.begin(), columns.end(), column) == columns.end()) columns.push_back(column);
+    }
+  }
+  for (std::size_t back = 2; back < std::size_t{1} << columns.size(); back += 2) {
+    std::array<Screw, 2>& screws = moved.others.emplace_back();
+    for (int side = 0; side < 2; side++) {
+      Screw& screw = screws[static_cast<std::size_t>(side)];
+      const auto& chain = chains_[static_cast<std::size_t>(both[side]->frame)];
+      for (std::size_t i = shared; i < chain.size(); i++) {
+        const auto found = std::find(columns.begin(), columns.end(), frames_.column[chain[i]]);
+        const double sign = back >> (found - columns.begin()) & 1 ? -1.0 : 1.0;
+        screw = {screw.spin + at.turning[chain[i]] * sign, screw.drift + at.along[chain[i]] * sign};
+      }
+    }
+  }
+}
+
+namespace {
+
+/// Return the same along one diagonal, without what nodes stray.
+double gap_along(const Moved& moved, const std::array<Screw, 2>& screws, const Vector& direction, By by) {
   double extremes[2] = {0.0, 0.0};
   for (int side = 0; side < 2; side++) {
     const Moving& moving = moved.nodes[side];
     const double sign = side == 0 ? 1.0 : -1.0;
-    const Vector across = cross(direction, moving.spin);
+    const Screw& screw = screws[static_cast<std::size_t>(side)];
+    const Vector across = cross(direction, screw.spin);
     for (int end = 0; end < 2; end++) {
       const double time = end == 0 ? moved.half : -moved.half;
       const Vector functional = (direction + across * time) * sign, own = as_seen(moving, functional);
       extremes[end] += by == By::BOXES ? moving.node->box_reach(own) : dot(own, moving.node->farthest(own));
-      extremes[end] += dot(functional, moving.origin) + sign * time * dot(direction, moving.drift);
+      extremes[end] += dot(functional, moving.origin) + sign * time * dot(direction, screw.drift);
     }
   }
-  return -std::max(extremes[0], extremes[1]) - moved.strayed();
+  return -std::max(extremes[0], extremes[1]);
+}
+
+}  // namespace
+
+double gap(const Moved& moved, const Vector& direction, By by) {
+  double least = gap_along(moved, moved.screws(), direction, by);
+  for (const auto& screws : moved.others) least = std::min(least, gap_along(moved, screws, direction, by));
+  return least - moved.strayed();
 }
 
 }  // namespace evenroad::certificates

@@ -32,7 +32,13 @@ struct Curves {
   }
 };
 
-/// A pair of nodes during a part of a motion: the part `number` of 2^level.
+/// All values of the joints from `low` to `high`.  A cell is halved along one of `columns` after another.
+struct Ranges {
+  std::span<const double> low, high;
+  std::span<const std::int64_t> columns;
+};
+
+/// A pair of nodes during a part of a motion: the part `number` of 2^level; or in this cell of a box.
 struct Task {
   std::int64_t motion = 0, number = 0, level = 0, pair = 0;
   const Node *first = nullptr, *second = nullptr;
@@ -41,18 +47,26 @@ struct Task {
   double middle() const { return begin() + half(); }
 };
 
+/// How something turns and shifts.
+struct Screw {
+  Vector spin{}, drift{};
+};
+
 /// One of the two nodes of a task in the middle of its stretch, and how it moves against the other one.
 struct Moving {
   const Node* node = nullptr;
   Turn turn{};
-  Vector origin{}, spin{}, drift{};
+  Vector origin{};
+  Screw screw{};
 };
 
 /// What is known of a task: its two nodes, half of its length, a bound of their acceleration, and how far they are from
-/// the curve at most.
+/// the curve at most.  In a cell of a box the nodes move along each diagonal, of which `others` has all but the first.
 struct Moved {
   Moving nodes[2];
   double half = 0.0, stray = 0.0, loose = 0.0;
+  std::vector<std::array<Screw, 2>> others;
+  std::array<Screw, 2> screws() const { return {nodes[0].screw, nodes[1].screw}; }
   /// How far the nodes are at most from where their velocity takes them.
   double strayed() const { return 0.5 * half * half * stray + loose; }
 };
@@ -77,6 +91,14 @@ class Motions {
   /// Joints are as far as `tolerance` from the curves.
   Motions(const Frames& frames, const Curves& curves, double tolerance);
 
+  /// Joints are anywhere in a box.
+  Motions(const Frames& frames, const Ranges& box);
+
+  bool in_box() const { return !box_.low.empty(); }
+
+  /// How often a motion, or a box, is halved at most.
+  std::int64_t deepest() const;
+
   Moved moved(const Task& task);
 
   /// Return the same of a frame and what is as far as `reach` from its origin, against the root.
@@ -89,12 +111,17 @@ class Motions {
     std::vector<double> rate, bend;
   };
 
+  void add_frame(double most);
   const State& state(const Task& task);
+  void find_cell(const Task& task);
   Carried carried(const State& at, double half, std::int64_t frame, std::size_t shared, double reach);
+  void add_diagonals(const State& at, const Task& task, std::size_t shared, Moved& moved) const;
 
   Frames frames_;
   Curves curves_;
-  double tolerance_;
+  Ranges box_;
+  double tolerance_ = 0.0;
+  std::vector<double> low_, middle_, high_;       // of the cell of a box
   std::vector<std::vector<std::size_t>> chains_;  // joints above each frame, from the root
   std::vector<double> slide_, shift_;             // how far each joint slides at most, and is from the one before
   std::vector<double> levers_;                    // memory of one call

@@ -19,26 +19,40 @@ Vector farthest_by(const Node& node, const Vector& own, By by) {
   return point;
 }
 
-/// Return the place of the second node less that of the first one that is least along a direction.
-Vector least_along(const Moved& moved, const Vector& direction, By by, When when) {
-  double least = std::numeric_limits<double>::infinity();
-  Vector found{};
+struct Least {
+  double along = std::numeric_limits<double>::infinity();
+  Vector at{};
+};
+
+/// Find the place of the second node less that of the first one that is least along a direction, on one diagonal.
+void find_least(const Moved& moved, const std::array<Screw, 2>& screws, const Vector& direction, By by, When when,
+                Least& least) {
   for (int end = 0; end < (when == When::BOTH ? 2 : 1); end++) {
     const double time = when == When::MIDDLE ? 0.0 : end == 0 ? moved.half : -moved.half;
     Vector apart{};
     for (int side = 0; side < 2; side++) {
       const Moving& moving = moved.nodes[side];
       const double sign = side == 0 ? 1.0 : -1.0;
-      const Vector functional = (direction + cross(direction, moving.spin) * time) * sign;
+      const Screw& screw = screws[static_cast<std::size_t>(side)];
+      const Vector functional = (direction + cross(direction, screw.spin) * time) * sign;
       const Vector own = farthest_by(*moving.node, as_seen(moving, functional), by);
       Vector point = placed(moving, own);
-      point = point + (moving.drift + cross(moving.spin, point)) * time;
+      point = point + (screw.drift + cross(screw.spin, point)) * time;
       apart = apart - point * sign;
     }
     const double along = dot(apart, direction);
-    if (along < least) least = along, found = apart;
+    if (along < least.along) least = {along, apart};
   }
-  return found;
+}
+
+/// Return the same of all diagonals; in the middle all are alike.
+Vector least_along(const Moved& moved, const Vector& direction, By by, When when) {
+  Least least;
+  find_least(moved, moved.screws(), direction, by, when, least);
+  if (when == When::BOTH) {
+    for (const auto& screws : moved.others) find_least(moved, screws, direction, by, when, least);
+  }
+  return least.at;
 }
 
 bool has(const robot::Simplex& simplex, const Vector& point) {

@@ -20,8 +20,7 @@ constexpr double SPARE = 2e-9;                // what a gap has over [m]
 constexpr double AMPLE = 1e-6;                // with so much over, no better direction is searched [m]
 constexpr double TOUCHING = 1e-7;             // nearer single elements touch [m]
 constexpr double EXACT = 1e-7, ROUGH = 0.02;  // relative errors of distances
-constexpr std::int64_t DEEPEST = 26;
-constexpr std::size_t MANY = 1 << 16;  // with more corners, a node is halved before these are looked at
+constexpr std::size_t MANY = 1 << 16;         // with more corners, a node is halved before these are looked at
 
 double length(const Vector& v) { return std::sqrt(squared_length(v)); }
 
@@ -31,7 +30,8 @@ double size_of(const Node& node) {
 
 class Writer {
  public:
-  Writer(Motions& motions, std::span<const Pair> pairs) : motions_(motions), pairs_(pairs), last_(pairs.size()) {}
+  Writer(Motions& motions, std::span<const Pair> pairs)
+      : motions_(motions), pairs_(pairs), last_(pairs.size()), deepest_(motions.deepest()) {}
 
   Written written;
 
@@ -79,19 +79,19 @@ class Writer {
                          : size_of(first) < size_of(second) ? HALVE_SECOND
                                                             : HALVE_FIRST;
     // What is no number touches, too.
-    if (both && (!(still >= TOUCHING) || task.level >= DEEPEST)) {
+    if (both && (!(still >= TOUCHING) || task.level >= deepest_)) {
       note(task, still, at_middle.most - keep);
       return HALVE_TIME;
     }
     const double largest = std::max(size_of(first), size_of(second));
     // Nodes that are nearer than what touches have elements that are: no shorter stretch tells them apart.
     const bool by_parts =
-        !(still >= TOUCHING) || (travel > 8.0 * still && largest > 4.0 * travel) || task.level >= DEEPEST;
+        !(still >= TOUCHING) || (travel > 8.0 * still && largest > 4.0 * travel) || task.level >= deepest_;
     return by_parts && !both ? halve : HALVE_TIME;
   }
 
-  /// Return whether a task matters: what begins after a touch does not.
-  bool matters(const Task& task) const { return touched_ < 0.0 || task.begin() < touched_; }
+  /// Return whether a task matters: what begins after a touch does not, nor anything else of a box.
+  bool matters(const Task& task) const { return touched_ < 0.0 || (!motions_.in_box() && task.begin() < touched_); }
 
   void push_halves(std::vector<Task>& tasks, const Task& task, Answer answer) {
     for (int side = 0; side < 2; side++) {
@@ -99,7 +99,7 @@ class Writer {
       if (answer == HALVE_TIME) half.number = 2 * task.number + side, half.level++;
       if (answer == HALVE_FIRST) half.first = &task.first->half(side);
       if (answer == HALVE_SECOND) half.second = &task.second->half(side);
-      if (half.level <= DEEPEST) tasks.push_back(half);
+      if (half.level <= deepest_) tasks.push_back(half);
     }
   }
 
@@ -128,7 +128,8 @@ class Writer {
   Motions& motions_;
   std::span<const Pair> pairs_;
   std::vector<Vector> last_;  // directions along which each pair was separated last
-  double touched_ = -1.0;     // where on the path, in motions
+  std::int64_t deepest_;
+  double touched_ = -1.0;  // where on the path, in motions
 };
 
 }  // namespace
@@ -168,7 +169,7 @@ Written write(Motions& motions, std::size_t curves, std::span<const Pair> pairs,
     const Keeping found = keeping(motions, kept[static_cast<std::size_t>(task.pair)], task);
     written.answers.push_back(found == Keeping::KEPT ? BY_CENTRES : HALVE_TIME);
     if (found == Keeping::KEPT) continue;
-    if (found == Keeping::LEFT || task.level >= DEEPEST) {
+    if (found == Keeping::LEFT || task.level >= motions.deepest()) {
       const auto number = static_cast<std::int64_t>(pairs.size()) + task.pair;
       written.touch = {task.motion, number, task.middle() - static_cast<double>(task.motion), 0.0};
       break;
