@@ -38,7 +38,8 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ROOT / "src" / "evenroad" / "_native"
-ZIG = "ziglang>=0.17,<0.18"
+ZIG = "ziglang==0.17.1"
+"""CMakeLists.txt names files of its C++ library."""
 LIBRARIES = {"gnu": ("gnu.2.28", "manylinux_2_28"), "musl": ("musl", "musllinux_1_2")}
 """The oldest C library that a wheel built by `ziglang` runs with, in clang's words and in a wheel's name."""
 TARGETS = ("x86_64-linux-gnu", "aarch64-linux-gnu")
@@ -149,12 +150,13 @@ def definitions() -> dict[str, str]:
 
     folder = Path(ziglang.__file__).parent
     zig = folder / ("zig.exe" if os.name == "nt" else "zig")
-    # clang's own C++ library is built once and kept beside it: installations that share a cache replace each other's.
+    # What clang builds once for all links is kept beside it: installations that share a cache replace each other's.
     os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(folder / ".cache"))
-    defined |= {"CMAKE_CXX_COMPILER": f"{zig};c++", "EVENROAD_ZIG": "ON"}
-    # One optimization for CMake's trials and the kernel: for each, clang's own C++ library would be built once more.
+    defined |= {"CMAKE_CXX_COMPILER": f"{zig};c++", "EVENROAD_ZIG": str(folder)}
     flags = "-O3 -s -fno-sanitize=undefined"
     if sys.platform == "linux":
+        # CMake's trials need no C++ library: linked with it, clang would compile all of it.
+        defined |= {"CMAKE_CXX_COMPILER_ID_TEST_FLAGS_FIRST": "-c", "CMAKE_EXE_LINKER_FLAGS": "-nostdlib++"}
         machine, _, library = target().split("-")
         flags += f" -fPIC -target {machine}-linux-{LIBRARIES[library][0]}"
         python, _, _ = str(sysconfig.get_config_var("SOABI")).partition(platform.machine())
