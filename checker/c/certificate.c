@@ -112,6 +112,16 @@ static void add_pose(Certificate* to, char* text, bool turned) {
   to->poses[to->pose_count++] = goal;
 }
 
+static void add_limit(Certificate* to, char* text) {
+  Limit limit = {.velocity = positive(&text)};
+  limit.acceleration = positive(&text);
+  limit.name = text;
+  for (size_t i = 0; i < to->limit_count; ++i) {
+    if (!strcmp(to->limits[i].name, text)) fail(REFUSED, "a limit comes twice: %.60s", text);
+  }
+  to->limits[to->limit_count++] = limit;
+}
+
 static void add_named(Named* list, size_t* count, Named one) {
   for (size_t i = 0; i < *count; ++i) {
     if (!strcmp(list[i].name, one.name)) fail(REFUSED, "named twice: %.60s", one.name);
@@ -183,6 +193,8 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
     to->joints[to->joint_count++] = value;
   } else if (!to->of_no_path && !to->of_pairs && (!strcmp(line, "axis") || !strcmp(line, "point"))) {
     add_kept(to, value, *line == 'a');
+  } else if (!to->of_no_path && !to->of_pairs && !strcmp(line, "limit")) {
+    add_limit(to, value);
   } else if (to->of_no_path && (!strcmp(line, "position") || !strcmp(line, "pose"))) {
     add_pose(to, value, !strcmp(line, "pose"));
   } else if (!strcmp(line, "cells") && to->of_no_path) {
@@ -200,6 +212,13 @@ static void read_line(Certificate* to, char* line, bool seen[ONCE]) {
   }
 }
 
+size_t column_of(const Certificate* certificate, const char* name) {
+  for (size_t i = 0; i < certificate->joint_count; ++i) {
+    if (!strcmp(certificate->joints[i], name)) return i;
+  }
+  return NONE;
+}
+
 static void require_counts(const Certificate* certificate, const bool seen[ONCE]) {
   for (int i = 0; i <= WITNESSES; ++i) {
     bool of_path = i < ANSWERS && !certificate->of_pairs;
@@ -208,6 +227,9 @@ static void require_counts(const Certificate* certificate, const bool seen[ONCE]
     if (seen[i] != needed) fail(REFUSED, "a line is missing, or is of another kind of certificate");
   }
   if (!certificate->joint_count) fail(REFUSED, "no joint is named");
+  for (size_t i = 0; i < certificate->limit_count; ++i) {
+    if (column_of(certificate, certificate->limits[i].name) == NONE) fail(REFUSED, "a limit is of no joint");
+  }
   if (seen[TOLERANCE] && (certificate->of_no_path || certificate->of_pairs)) fail(REFUSED, "a tolerance of no path");
   if (certificate->of_pairs) {
     if (certificate->clearance > 0 || certificate->padding_count) fail(REFUSED, "a distance between links");
@@ -245,6 +267,7 @@ static void read_header(Certificate* to, char* text) {
   to->trees = take(lines, sizeof *to->trees);
   to->poses = take(lines, sizeof *to->poses);
   to->kept = take(lines + 1, sizeof *to->kept);
+  to->limits = take(lines, sizeof *to->limits);
   bool seen[ONCE] = {false};
   while (*text) {
     char* line = text;

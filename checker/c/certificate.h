@@ -12,6 +12,12 @@ typedef struct {
   double value;
 } Named;
 
+/* What a joint does not exceed. */
+typedef struct {
+  const char* name;
+  double velocity, acceleration;
+} Limit;
+
 /* A constraint: a unit vector of a link, or a point, is within `limit` of a box. */
 typedef struct {
   const char* link;
@@ -44,6 +50,8 @@ typedef struct {
   size_t joint_count, held_count, padding_count;
   Kept* kept; /* axes first */
   size_t axis_count, kept_count;
+  Limit* limits;
+  size_t limit_count;
   double clearance, tolerance;
   size_t degree, motions, answer_count, direction_count, points;
   double* values; /* of a point, one for each joint */
@@ -57,6 +65,9 @@ typedef struct {
 } Certificate;
 
 Certificate* read_certificate(File file);
+
+/* The column of a joint's name in the points, or NONE. */
+size_t column_of(const Certificate* certificate, const char* name);
 size_t bytes_of_answer(const Certificate* certificate, const Tree* tree);
 int answer_at(const Certificate* certificate, size_t index);
 float float_at(const uint8_t* data);

@@ -67,7 +67,7 @@ static void check(const Asked* asked) {
   } else if (certificate->of_pairs) {
     print_never(&proved);
   } else {
-    print_proved(&proved);
+    print_proved(&proved, asked->path != NULL);
   }
 }
 

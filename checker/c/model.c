@@ -7,14 +7,6 @@ enum { LONGEST_MIMICRY = 10 };
 
 static const double LIMIT_TOLERANCE = 1e-5, NO_RANGE = 1000, ROUNDING = 1e-9;
 
-/* The column of a joint's name in the points, or NONE. */
-static size_t column_of(const Certificate* certificate, const char* name) {
-  for (size_t i = 0; i < certificate->joint_count; ++i) {
-    if (!strcmp(certificate->joints[i], name)) return i;
-  }
-  return NONE;
-}
-
 static double held_value(const Certificate* certificate, const char* name) {
   for (size_t i = 0; i < certificate->held_count; ++i) {
     if (!strcmp(certificate->held[i].name, name)) return certificate->held[i].value;

@@ -6,6 +6,9 @@
 enum { FINE = 64 }; /* parts of a curve, in which what is near it is looked for */
 
 static const double STILL = 1e-9; /* how near values count as the same */
+static const double EXCEEDING =
+    1e-6; /* by how much a limit may be exceeded, and the share of a step that steps differ by */
+static const char TIME[] = "time [s]";
 
 bool is_straight(const Certificate* certificate) {
   size_t joints = certificate->joint_count;
@@ -19,7 +22,7 @@ bool is_straight(const Certificate* certificate) {
 /* What a column of a table says: the value of a joint of the certificate, of another one, or nothing of a place. */
 typedef struct {
   size_t joint; /* or NONE */
-  bool skipped;
+  bool skipped, is_time;
   double held;
 } Column;
 
@@ -36,7 +39,8 @@ static char* next_part(char** text, const char* marks) {
 static Column column_named(const Certificate* certificate, char* name) {
   static const char unit[] = " [rad or m]";
   size_t size = strlen(name), width = sizeof unit - 1;
-  Column column = {.joint = NONE, .skipped = !strcmp(name, "time [s]") || strstr(name, "/s")};
+  Column column = {.joint = NONE, .is_time = !strcmp(name, TIME)};
+  column.skipped = column.is_time || strstr(name, "/s");
   if (size >= width && !strcmp(name + size - width, unit)) name[size - width] = 0;
   for (size_t i = 0; i < certificate->joint_count && !column.skipped; ++i) {
     if (!strcmp(certificate->joints[i], name)) column.joint = i;
@@ -50,25 +54,28 @@ static Column column_named(const Certificate* certificate, char* name) {
 /* Read the first line: each joint of the certificate must have one column. */
 static Column* columns_of(const Certificate* certificate, char* line, size_t* count, const char* path) {
   Column* columns = take(strlen(line) + 1, sizeof *columns);
-  size_t* seen = take(certificate->joint_count, sizeof *seen);
+  size_t *seen = take(certificate->joint_count, sizeof *seen), times = 0;
   for (char* name; (name = next_part(&line, ","));) {
     Column column = columns[(*count)++] = column_named(certificate, name);
     if (column.joint != NONE) ++seen[column.joint];
+    times += column.is_time;
   }
+  if (certificate->limit_count && times != 1) fail(REFUSED, "%s has no times, or two columns of them", path);
   for (size_t i = 0; i < certificate->joint_count; ++i) {
     if (seen[i] != 1) fail(REFUSED, "%s has other joints than the certificate", path);
   }
   return columns;
 }
 
-/* Read rows of values as the points of the certificate have them. */
-static double* rows_of(const Certificate* certificate, const char* path, size_t* count) {
+/* Read rows of values as the points of the certificate have them, and their times. */
+static double* rows_of(const Certificate* certificate, const char* path, size_t* count, double** times) {
   File file = read_file(path);
   char *text = copied((const char*)file.data, file.size), *line = next_part(&text, "\r\n");
   size_t joints = certificate->joint_count, column_count = 0, lines = 2;
   for (const char* each = text; each && *each; ++each) lines += *each == '\n';
   Column* columns = columns_of(certificate, line, &column_count, path);
   double* rows = take(lines * joints, sizeof *rows);
+  *times = take(lines, sizeof **times);
   while ((line = next_part(&text, "\r\n"))) {
     size_t column = 0;
     if (!*line) continue;
@@ -77,6 +84,7 @@ static double* rows_of(const Certificate* certificate, const char* path, size_t*
       if (column == column_count) fail(BAD_INPUT, "%s is no table", path);
       read_numbers(cell, &value, 1, path);
       const Column* of = columns + column;
+      if (of->is_time) (*times)[*count] = value;
       if (of->joint != NONE) rows[*count * joints + of->joint] = value;
       if (of->joint == NONE && !of->skipped && !(fabs(value - of->held) <= STILL)) {
         fail(REFUSED, "%s has a joint elsewhere than the certificate", path);
@@ -145,9 +153,34 @@ static bool are_near(const Certificate* certificate, const double* rows, size_t 
   return count && away(places, rows + (count - 1) * joints, rows + (count - 1) * joints, joints) <= near;
 }
 
+/* Refuse rows that exceed a limit, as control points of a spline of degree 2 in time, the first and last ones twice. */
+static void require_slow(const Certificate* certificate, const double* rows, const double* times, size_t count) {
+  size_t joints = certificate->joint_count;
+  double least = INFINITY, most = 0;
+  for (size_t i = 1; i < count; ++i) {
+    least = fmin(least, times[i] - times[i - 1]);
+    most = fmax(most, times[i] - times[i - 1]);
+  }
+  if (count < 2 || !(least > 0 && most <= (1 + EXCEEDING) * least)) fail(REFUSED, "times do not rise by equal steps");
+  for (size_t k = 0; k < certificate->limit_count; ++k) {
+    const Limit* limit = certificate->limits + k;
+    const double* at = rows + column_of(certificate, limit->name);
+    double before = 0;
+    for (size_t i = 1; i <= count; ++i) {
+      double velocity = i < count ? (at[i * joints] - at[(i - 1) * joints]) / least : 0;
+      bool keeps = fabs(velocity) <= limit->velocity + EXCEEDING;
+      keeps = keeps && fabs(velocity - before) / least <= limit->acceleration + EXCEEDING;
+      if (!keeps) fail(REFUSED, "%.60s exceeds its limit of velocity or acceleration", limit->name);
+      before = velocity;
+    }
+  }
+}
+
 void require_same_path(const Certificate* certificate, const char* path) {
   size_t count = 0, joints = certificate->joint_count;
-  const double* rows = rows_of(certificate, path, &count);
+  double* times = NULL;
+  const double* rows = rows_of(certificate, path, &count, &times);
+  if (certificate->limit_count) require_slow(certificate, rows, times, count);
   if (certificate->tolerance > 0) {
     if (!are_near(certificate, rows, count)) fail(REFUSED, "%s leaves the curves of the certificate", path);
     return;

@@ -157,13 +157,18 @@ void print_never(const Proved* proved) {
   print_pairs(proved);
 }
 
-void print_proved(const Proved* proved) {
+void print_proved(const Proved* proved, bool timed) {
   const Model* model = proved->model;
   const Certificate* certificate = model->certificate;
   size_t last = (certificate->points - 1) * certificate->joint_count;
   printf("PROVED: %zu %s touch nothing", certificate->motions,
          is_straight(certificate) ? "straight motions" : "curves");
   print_distances(certificate);
+  for (size_t i = 0; timed && i < certificate->limit_count; ++i) {
+    const Limit* limit = certificate->limits + i;
+    printf("  %s: at most %.6g per second and %.6g per second^2, from rest to rest\n", limit->name, limit->velocity,
+           limit->acceleration);
+  }
   for (size_t i = 0; i < certificate->joint_count; ++i) {
     double from = certificate->values[i], to = certificate->values[last + i];
     printf("  %s: from %.6g to %.6g\n", certificate->joints[i], from, to);
@@ -172,6 +177,9 @@ void print_proved(const Proved* proved) {
   for (size_t i = 0; i < certificate->kept_count; ++i) print_kept(certificate->kept + i);
   if (certificate->tolerance > 0) printf("  every joint may be %g off the curves\n", certificate->tolerance);
   print_pairs(proved);
+  if (certificate->limit_count && !timed) {
+    printf("  limits of velocity and acceleration: the table that has the times is not given\n");
+  }
 }
 
 static void print_pose(const PoseGoal* goal) {

@@ -23,8 +23,8 @@ void require_same_path(const Certificate* certificate, const char* path);
 void require_end(const Certificate* certificate, const char* name, const char* said, size_t first, size_t count);
 
 /* Print what was proved, about which bodies, and what is not claimed. */
-void print_proved(const Proved* proved);
-void print_never(const Proved* proved); /* of a certificate of pairs */
+void print_proved(const Proved* proved, bool timed); /* whether a table has the times */
+void print_never(const Proved* proved);              /* of a certificate of pairs */
 void print_no_path(const NoPath* shown);
 
 #endif

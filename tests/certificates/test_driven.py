@@ -1,9 +1,11 @@
 """Certificates of trajectories: parabolas near all that is driven, with rounded corners."""
 
 import subprocess
+import sys
 
 import numpy as np
 import pytest
+from scipy.interpolate import BSpline
 
 import evenroad as er
 from evenroad.certificates.certify import certify
@@ -147,3 +149,92 @@ def test_states_that_touch_have_no_certificate(reach, tmp_path):
         certify(
             box_reach().world, box_reach().path, Sources.named("ur5", "box-reach"), tmp_path / "bad.cert", states=far
         )
+
+
+def _lines_of(table):
+    return [table[0], *(",".join(map(repr, map(float, row))) for row in table[1:])]
+
+
+@pytest.fixture(scope="module")
+def timed(tmp_path_factory):
+    """A trajectory with limits, its table and its certificate, and how both commands judge a changed pair of them."""
+    folder = tmp_path_factory.mktemp("timed")
+    words = [*PLAN, "--trajectory", str(folder / "go.csv"), "--certificate", str(folder / "go.cert")]
+    assert main([*words, "-o", str(folder / "plan.json")]) == 0
+    lines = (folder / "go.csv").read_text().splitlines()
+    return lines, (folder / "go.cert").read_bytes(), folder
+
+
+def judged(timed, data=None, lines=None, table=True):
+    """Return what both commands print, and their exit code, of a certificate with a table."""
+    given, certificate, folder = timed
+    (folder / "other.cert").write_bytes(certificate if data is None else data)
+    (folder / "other.csv").write_text("\n".join(given if lines is None else lines))
+    words = [str(folder / "other.cert"), *box_reach().words[1:], *(["--path", str(folder / "other.csv")] * table)]
+    done = subprocess.run([program("command"), *words], capture_output=True, text=True)
+    python = subprocess.run([sys.executable, "-m", "evenroad_verify", *words], capture_output=True, text=True)
+    assert python.returncode == done.returncode
+    assert done.returncode or python.stdout == done.stdout
+    return done.returncode, done.stdout
+
+
+def test_both_say_which_limits_a_table_keeps_and_a_spline_agrees(timed):
+    code, said = judged(timed)
+    assert code == 0
+    limits = read_certificate(timed[1]).limits
+    assert [name for name, *_ in limits] == list(box_reach().world.robot.group)
+    assert f"  wrist_1_joint: at most {limits[3][1]:.6g} per second and {limits[3][2]:.6g} per second^2, from" in said
+    table = np.array([line.split(",") for line in timed[0][1:]], float)
+    step, rows = table[1, 0], table[:, 1:7][[0, *range(len(table)), -1]]
+    spline = BSpline(step * np.arange(len(rows) + 3), rows, 2)
+    t = np.linspace(2.0 * step, len(rows) * step, 50_000)
+    assert (np.abs(spline(t, 1)) <= [fast + 1e-6 for _, fast, _ in limits]).all()
+    assert (np.abs(spline(t, 2)) <= [hard + 1e-5 for *_, hard in limits]).all()
+    assert np.abs(spline(t, 2)).max() > 0.5 * limits[0][2]
+
+
+def test_without_a_table_no_limits_are_claimed(timed):
+    code, said = judged(timed, table=False)
+    assert code == 0
+    assert "at most" not in said
+    assert said.endswith("limits of velocity and acceleration: the table that has the times is not given\n")
+
+
+@pytest.mark.parametrize("factor", [0.5, 0.9])
+def test_a_limit_that_is_lowered_and_a_time_that_is_shortened_are_refused(factor, timed):
+    lines, data, _ = timed
+    table = np.array([line.split(",") for line in lines[1:]], float)
+    step = table[1, 0]
+    fastest = np.abs(np.diff(table[:, 1:7], axis=0)).max(axis=0) / step
+    for column, (name, _, hard) in enumerate(read_certificate(data).limits):
+        found = next(
+            line
+            for line in data.split(b"\n\n")[0].split(b"\n")
+            if line.endswith(b" " + name.encode()) and line.startswith(b"limit")
+        )
+        lowered = f"limit {factor * fastest[column]!r} {hard!r} {name}".encode()
+        assert judged(timed, data.replace(found, lowered))[0] == 1
+    assert judged(timed, data.replace(found, found.replace(b"limit ", b"limit 1")))[0] == 0
+    hurried = table.copy()
+    hurried[:, 0] *= factor
+    assert judged(timed, lines=_lines_of([lines[0], *hurried]))[0] == 1
+    once = table.copy()
+    once[len(once) // 2 :, 0] -= (1.0 - factor) * step
+    assert judged(timed, lines=_lines_of([lines[0], *once]))[0] == 1
+    # A row is left out: the robot is twice as fast there.
+    assert judged(timed, lines=_lines_of([lines[0], *table[:40], *np.delete(table[41:], -1, axis=0)]))[0] == 1
+
+
+def test_tables_without_times_and_lines_of_no_joint_are_refused(timed):
+    lines, data, _ = timed
+    assert judged(timed, lines=[lines[0].replace("time [s]", "times/s"), *lines[1:]])[0] == 1
+    first = data.index(b"limit ")
+    end = data.index(b"\n", first)
+    line = data[first:end]
+    for other in (
+        line + b"\n" + line,
+        line.replace(b"shoulder_pan_joint", b"knee"),
+        b"limit -1 1 elbow_joint",
+        b"limit 1",
+    ):
+        assert judged(timed, data.replace(line, other))[0] == 1

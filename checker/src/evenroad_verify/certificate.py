@@ -68,6 +68,8 @@ class Certificate:
     """Constraints, axes first."""
     tolerance: float = 0.0
     """How far the joints may be from the curves."""
+    limits: tuple[tuple[str, float, float], ...] = ()
+    """Joints with the velocity and acceleration that they do not exceed [rad or m, and s]."""
     robot: str | None = None
     """Digest of the file of the robot that it carries, None where it carries none; `scene` alike."""
     scene: str | None = None
@@ -104,10 +106,12 @@ def read_file(data: bytes, magic: bytes, read: Callable[[dict[str, list[str]], m
 
 def _certificate(said: dict[str, list[str]], body: memoryview) -> Certificate:
     once = ("degree", "motions", "answers", "directions")
-    head, tolerance = head_of(said, once, ("axis", "point", "tolerance")), said.get("tolerance", ["0"])
+    head, tolerance = head_of(said, once, ("axis", "point", "limit", "tolerance")), said.get("tolerance", ["0"])
     demand(len(tolerance) == 1, "its header has a line twice")
     head["kept"] = tuple(map(_axis, said.get("axis", ()))) + tuple(map(_point, said.get("point", ())))
-    head["tolerance"] = _length(tolerance[0])
+    head["tolerance"], head["limits"] = _length(tolerance[0]), tuple(map(_limit, said.get("limit", ())))
+    limited = [name for name, *_ in head["limits"]]
+    demand(len({*limited} & {*head["joints"]}) == len(limited), "a limit is of no joint of the path, or comes twice")
     dim = len(head["joints"])
     degree, motions, answers, directions = (count_of(said[key][0]) for key in once)
     demand(degree in (1, 2) and 0 < motions < MOST_MOTIONS, "it has no path, or too long a one")
@@ -197,6 +201,13 @@ def _point(line: str) -> Kept:
     point, xyzw, low, high = np.split(np.array(rest), (3, 7, 10))
     demand(np.linalg.norm(xyzw) > 1e-9, "a quaternion is zero")
     return Kept(link, False, within, point, xyzw, low, high)
+
+
+def _limit(line: str) -> tuple[str, float, float]:
+    *words, name = line.split(" ", 2)
+    velocity, acceleration = numbers(words, 2).tolist()
+    demand(velocity >= 0.0 and acceleration >= 0.0, "a limit is less than 0")
+    return name, velocity, acceleration
 
 
 def _unit(vector: list[float]) -> Floats:

@@ -86,6 +86,12 @@ def main(words: Sequence[str] | None = None) -> int:
         if asked.path is not None:
             demand(is_of_path, "it is about no path")
             require_same_path(carrier, asked.path)
+            lines[1:1] = [
+                f"  {name}: at most {fast:.6g} per second and {hard:.6g} per second^2, from rest to rest"
+                for name, fast, hard in carrier.limits
+            ]
+        if carrier.limits and asked.path is None:
+            lines.append("  limits of velocity and acceleration: the table that has the times is not given")
         _require_end("start", asked.start, carrier.curves[:1, 0])
         _require_end("goal", asked.goal, goals)
         if asked.write is not None:

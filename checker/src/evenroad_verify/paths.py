@@ -9,7 +9,9 @@ import numpy as np
 from evenroad_verify.certificate import Certificate
 from evenroad_verify.errors import BadInput, Floats, demand, require
 
-_UNIT = " [rad or m]"
+_UNIT, _TIME = " [rad or m]", "time [s]"
+_ABOVE = 1e-6
+"""By how much a limit may be exceeded [rad or m, and s], and which share of a step two may differ by."""
 _FINE = 64
 """Parts into which a curve is divided to find what is near it."""
 
@@ -21,9 +23,8 @@ def require_same_path(certificate: Certificate, path: Path) -> None:
     """
     lines = [line.split(",") for line in path.read_text("utf-8", "replace").splitlines() if line]
     require(lines and all(len(line) == len(lines[0]) for line in lines), f"{path} is no table")
-    columns = {
-        name.removesuffix(_UNIT): i for i, name in enumerate(lines[0]) if "/s" not in name and name != "time [s]"
-    }
+    demand(not certificate.limits or lines[0].count(_TIME) == 1, f"{path} has no times, or two columns of them")
+    columns = {name.removesuffix(_UNIT): i for i, name in enumerate(lines[0]) if "/s" not in name and name != _TIME}
     demand(set(certificate.joints) <= columns.keys(), f"{path} has other joints than the certificate")
     try:
         table = np.array(lines[1:], float)
@@ -33,6 +34,8 @@ def require_same_path(certificate: Certificate, path: Path) -> None:
         still = np.abs(table[:, columns[name]] - certificate.held.get(name, 0.0)) <= 1e-9
         demand(still.all(), f"{path} has {name} elsewhere than the certificate")
     rows = table[:, [columns[name] for name in certificate.joints]]
+    if certificate.limits:
+        _require_slow(certificate, rows, table[:, lines[0].index(_TIME)])
     if certificate.tolerance:
         demand(len(rows) and _are_near(certificate, rows), f"{path} leaves the curves of the certificate")
         return
@@ -41,6 +44,23 @@ def require_same_path(certificate: Certificate, path: Path) -> None:
     demand(is_straight, "it proves curves, which no table of waypoints gives")
     points = np.concatenate([certificate.curves[:, 0], certificate.curves[-1:, 2]])
     demand(rows.shape == points.shape and (rows == points).all(), f"{path} has other waypoints than the certificate")
+
+
+def _require_slow(certificate: Certificate, rows: Floats, times: Floats) -> None:
+    """Raise Refused unless all limits hold of the spline of degree 2 in time whose control points are the rows.
+
+    Its control points are equal steps apart, and the first and the last one come twice: it begins and ends at rest.
+    """
+    steps = np.diff(times)
+    equal = len(steps) > 0 and steps.min() > 0.0 and steps.max() <= (1.0 + _ABOVE) * steps.min()
+    demand(equal, "times do not rise by equal steps")
+    velocity = np.diff(np.concatenate([rows[:1], rows, rows[-1:]]), axis=0) / steps.min()
+    acceleration = np.diff(velocity, axis=0) / steps.min()
+    for name, fast, hard in certificate.limits:
+        column = certificate.joints.index(name)
+        keeps = (np.abs(velocity[:, column]) <= fast + _ABOVE).all()
+        keeps &= (np.abs(acceleration[:, column]) <= hard + _ABOVE).all()
+        demand(keeps, f"{name} exceeds its limit of velocity or acceleration")
 
 
 def _are_near(certificate: Certificate, rows: Floats) -> bool:

@@ -20,6 +20,7 @@ from evenroad._shared import once_property
 from evenroad.certificates.claim import Claim, Claimed, Links, claim_of
 from evenroad.certificates.curves import TOLERANCES, Curves, driven, straight
 from evenroad.certificates.kept import claimed_keeps, rows_of
+from evenroad.certificates.limits import kept_limits
 from evenroad.certificates.plain import claimed_scene
 from evenroad.certificates.robot_files import ReadRobot, read_robot_files
 from evenroad.certificates.sources import Files, scene_files
@@ -32,6 +33,7 @@ from evenroad.errors import Exhausted, InvalidValue, shown
 from evenroad.robots.kinematics import held_values
 from evenroad.scenes.scene import Scene
 from evenroad.space.path import continued
+from evenroad.trajectory.trajectory import Trajectory
 
 MAGIC = "evenroad certificate 1\n"
 MOST_TASKS = 4_000_000
@@ -40,14 +42,25 @@ DECIDED = 1e-7
 PathLike = str | os.PathLike[str]
 
 
-def certify(world: object, path: Floats, sources: Sources, file: PathLike, *, states: Floats | None = None) -> None:
+def certify(
+    world: object,
+    path: Floats,
+    sources: Sources,
+    file: PathLike,
+    *,
+    trajectory: Trajectory | None = None,
+    states: Floats | None = None,
+) -> None:
     """Write the certificate of a path, (p, dim), that a world of these files calls free.
 
-    With `states`, (n, dim), it is about the straight motions between these, which a trajectory along the path drives.
+    With a `trajectory` along the path it is about the straight motions between its states, which are driven, and names
+    the limits that these keep; with `states`, (n, dim), about the motions between these.
 
     Raises NotAvailable for what no certificate speaks of; InvalidValue if the path touches something, or comes too near
     to it; Exhausted if the proof would be too long.
     """
+    limits = {} if trajectory is None else kept_limits(trajectory)
+    states = states if trajectory is None else trajectory.positions
     keeps: Sequence[Keep] = ()
     if isinstance(world, KeptWorld) and not isinstance(world, DrivenWorld):
         keeps, world = world.keeps, world.world
@@ -61,6 +74,8 @@ def certify(world: object, path: Floats, sources: Sources, file: PathLike, *, st
     else:
         curves, answers, directions = _near(claim, states)
     lines = [keep.line for keep in claimed.beside.keeps]
+    joints = claimed.beside.joints
+    lines += [f"limit {fast!r} {hard!r} {name}" for name, (fast, hard) in limits.items() if name in joints]
     lines += [f"tolerance {curves.tolerance!r}"] if curves.tolerance else []
     lines += [f"degree {curves.degree}", f"motions {len(curves.controls)}"]
     lines += [f"answers {len(answers)}", f"directions {len(directions)}"]

@@ -7,7 +7,6 @@ from functools import reduce
 from operator import and_
 from pathlib import Path
 
-from evenroad._arrays import Floats
 from evenroad._time_limit import within
 from evenroad.cli import interrupted
 from evenroad.cli.outputs import require_certifiable
@@ -36,6 +35,7 @@ from evenroad.poses.pose_goal import as_axis, as_numbers, pose_goal_of
 from evenroad.roadmap import load_roadmap
 from evenroad.robots.kinematics import held_values
 from evenroad.scenes.scene_file import find_scene, load_scene
+from evenroad.trajectory.trajectory import Trajectory
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -88,7 +88,7 @@ def plan_arm(plan: PlanArm) -> int:
     source = {"plan": {name: record[name] for name in ("query", "made_of")}}
     more_rows, record["trajectory"], trajectory = trajectory_rows(plan, problem, result, constraints, make, source)
     rows = [*_rows(problem), *([] if meshes is None else [("second check", str(meshes))]), *more_rows]
-    rows += _certified(plan, result, None if trajectory is None else trajectory.positions)
+    rows += _certified(plan, result, trajectory)
 
     def draw(file: Path) -> None:
         from evenroad.viz.arm import save_arm_picture
@@ -99,7 +99,7 @@ def plan_arm(plan: PlanArm) -> int:
     return interrupted() if stopped else code
 
 
-def _certified(plan: PlanArm, result: PlanResult, states: Floats | None) -> list[tuple[str, str]]:
+def _certified(plan: PlanArm, result: PlanResult, trajectory: Trajectory | None) -> list[tuple[str, str]]:
     """Write the certificate of a path, or of a trajectory's states, or that there is no path; return its row."""
     if plan.certificate is None:
         return []
@@ -113,14 +113,14 @@ def _certified(plan: PlanArm, result: PlanResult, states: Floats | None) -> list
 
     sources = plan.sources(plan.robot, plan.world, plan.embed)
     if result.path is not None:
-        certify(result.world, result.path, sources, plan.certificate, states=states)
+        certify(result.world, result.path, sources, plan.certificate, trajectory=trajectory)
     else:
         try:
             certify_no_path(result.world, result.start, result.goals, sources, plan.certificate, result.poses)
         except NotAvailable as reason:
             # A proof may use more than a certificate: the answer of the plan stands.
             return [("certificate", str(reason))]
-    of = " of the trajectory" if states is not None else " of the path" if result.solved else ""
+    of = " of the trajectory" if trajectory is not None else " of the path" if result.solved else ""
     return [("certificate", f"{plan.certificate}{of}, which evenroad-verify checks")]
 
 

@@ -116,7 +116,7 @@ class RunTask(RobotOptions):
         files = [file.with_suffix(f".{number}{file.suffix}") for number in range(1, len(parts) + 1)]
         for (part, trajectory), each in zip(parts, files, strict=True):
             assert part.path is not None, "only of a motion that was found"
-            certify(part.world, part.path, sources, each, states=trajectory.positions)
+            certify(part.world, part.path, sources, each, trajectory=trajectory)
         named = f"{files[0]} to {files[-1]}" if len(files) > 1 else str(files[0])
         return [("certificates", f"{named} of the trajectory's motions, which evenroad-verify checks")]
 

@@ -464,7 +464,7 @@ class PlanResult(Rows, metaclass=KnowsElsewhere):
             certify_no_path(self.world, self.start, self.goals, sources, file, self.poses)
             return
         path, world = self._required("certified")
-        certify(world, path, sources, file, states=None if trajectory is None else trajectory.positions)
+        certify(world, path, sources, file, trajectory=trajectory)
 
     def _required(self, how: str) -> tuple[Floats, World]:
         """Return path and world, or raise InvalidValue that names the missing one."""

@@ -1,0 +1,26 @@
+"""Limits that a certificate claims of a trajectory: joints are no faster, and change their velocity no faster."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evenroad.trajectory.trajectory import Trajectory
+
+
+def kept_limits(trajectory: Trajectory) -> dict[str, tuple[float, float]]:
+    """Return the limits of velocity and acceleration of joints that a checker finds kept, joint -> both.
+
+    They hold of the spline of degree 2 in time whose control points are the states, the first and last ones twice.
+    """
+    if len(trajectory.times) < 2:
+        return {}
+    step = float(np.diff(trajectory.times).min())
+    velocity = np.diff(trajectory.positions[[0, *range(len(trajectory.times)), -1]], axis=0) / step
+    fastest, hardest = np.abs(velocity).max(axis=0), np.abs(np.diff(velocity, axis=0)).max(axis=0) / step
+    limits, found = trajectory.limits, {}
+    accelerations = np.maximum(limits.acceleration, limits.stopping)
+    for i, name in enumerate(trajectory.names):
+        fast, hard = float(limits.velocity[i]), float(accelerations[i])
+        if fastest[i] <= fast + 1e-7 and hardest[i] <= hard + 1e-7:
+            found[name] = fast, hard
+    return found
