@@ -109,6 +109,26 @@ def test_a_turned_floor_of_kilometres_is_never_called_farther_than_it_is():
     assert (clearance(ur5(), scene, free_edge(ur5(), scene, q)) > 0.0).all()
 
 
+@pytest.mark.parametrize("place", [(31.5, 0.2, -0.4), (0.3, -33.0, 31.8), (45.0, 60.0, -40.0)])
+def test_far_from_the_origin_no_contact_is_left_out(place):
+    """Boxes in whole numbers end 32 m away: there, and across their end, verdicts are the oracle's as anywhere."""
+    robot, scene = ur5(), random_scene(5)
+    base = replace(robot.joints[0], xyz=tuple(np.add(robot.joints[0].xyz, place)))
+    # What does not move stays at the origin, far from everything.
+    far = replace(robot, joints=(base, *robot.joints[1:]))
+    there = Scene(
+        [
+            Obstacle.of(each.name, each.shape, each.size, tuple(np.add(each.xyz, place)), each.rotation)
+            for each in scene.obstacles
+        ]
+    )
+    q = ArmWorld(far, there).space.from_cube(np.random.default_rng(9).random((2_000, 6)))
+    free, apart = ArmWorld(far, there).valid(q), clearance(far, there, q)
+    clear = np.abs(apart) > 1e-3
+    assert 0.02 < free.mean() < 0.98
+    np.testing.assert_array_equal(free[clear], apart[clear] > 0.0)
+
+
 @pytest.mark.parametrize("turn", [1e-7, 1e-5, 1e-4, 6e-4, 1e-3, 2e-3, 1e-2])
 @pytest.mark.parametrize("radius", [5e-4, 2e-3, 2e-2])
 def test_thin_and_nearly_parallel_rods_are_never_called_free_where_they_touch(turn, radius):

@@ -45,9 +45,11 @@ void add_row(Obstacles& all, const Obstacle& obstacle, Vec3 half) {
   if (lane == 0) {
     const Floats16 never = spread(NEVER_HIT);
     all.blocks.push_back({{Floats16{}, Floats16{}, Floats16{}}, {never, never, never}});
+    all.limits.emplace_back();
   }
   put(all.blocks.back().centre, lane, obstacle.centre.x, obstacle.centre.y, obstacle.centre.z);
   put(all.blocks.back().half, lane, half.x, half.y, half.z);
+  all.limits.back().put(lane, obstacle.centre, half);
   const auto number = static_cast<std::size_t>(obstacle.number);
   if (number >= all.row_of.size()) all.row_of.resize(number + 1, -1);
   all.row_of[number] = static_cast<int>(all.rows.size());

@@ -85,7 +85,10 @@ void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const d
   // A motion that needs more batches, about ten milliseconds, is not proved; usual motions need a few.
   const ProofLimits limits{tolerance, 1 << 11};
   const Borrowed workspace = checker.borrow();
-  const Joints& joints = checker.robot().joints;
+  const Robot& robot = checker.robot();
+  // What is proved is free at its states, too.  But larger hulls cost so much that states come first there.
+  const bool are_states_first = tolerance <= 0 || !robot.hulls.nodes.empty() || !robot.shapes.nodes.empty();
+  const Joints& joints = robot.joints;
   std::vector<double> start(a.columns), end(a.columns);
   Mask proved = 0;
   for (std::size_t row = 0; row < a.rows; row++) {
@@ -99,8 +102,8 @@ void motions_free(const Checker& checker, Matrix<const double> a, Matrix<const d
     free[row] = (proved >> lane & 1) != 0;
     if (free[row]) continue;
     free[row] = enter(a[row], joints, start) && enter(b[row], joints, end) &&
-                motion_free(*workspace, start, end, Known::NO_ENDPOINT) &&
-                (tolerance <= 0 || motion_proved(*workspace, start, end, limits));
+                (!are_states_first || motion_free(*workspace, start, end, Known::NO_ENDPOINT)) &&
+                (tolerance <= 0 || motion_proved(*workspace, start, end, limits, are_states_first));
   }
 }
 

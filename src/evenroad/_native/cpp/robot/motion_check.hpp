@@ -21,8 +21,10 @@ struct ProofLimits {
 /// spread over the motion.  The others follow in groups of sixteen neighbours, halves before quarters before eighths.
 bool motion_free(Workspace& workspace, std::span<const double> a, std::span<const double> b, Known known);
 
-/// Return whether the motion from `a` to `b`, within bounds, is proved free, not only at states.
-bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits);
+/// Return whether the motion from `a` to `b`, within bounds, is proved free, not only at states.  If its states were
+/// not tested before, one that touches something ends the proof.
+bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits,
+                   bool are_states_free = true);
 
 /// Return which of the first sixteen motions from rows of `a` to those of `b` are proved free together.
 ///

@@ -71,7 +71,8 @@ struct Piece {
 
 }  // namespace
 
-bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits) {
+bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<const double> b, ProofLimits limits,
+                   bool are_states_free) {
   const Robot& robot = workspace.checker.robot();
   Motion& motion = workspace.motion;
   motion.span(a, b, robot.joints, workspace.checker.resolution());
@@ -86,10 +87,12 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
   for (int batch = 0; batch < limits.most_batches; batch++) {
     const int level = waiting[count - 1].level;
     int taken = 0;
+    double shares[LANES];
     for (; taken < LANES && taken < count && waiting[count - 1 - taken].level == level; taken++) {
-      motion.share[taken] = waiting[count - 1 - taken].centre;
+      shares[taken] = waiting[count - 1 - taken].centre;
     }
-    for (int lane = taken; lane < LANES; lane++) motion.share[lane] = motion.share[taken - 1];
+    for (int lane = taken; lane < LANES; lane++) shares[lane] = shares[taken - 1];
+    motion.share = load<Doubles16>(shares);
     motion.write_states(workspace.states);
     workspace.placed.move_to(robot, workspace.enlarged, workspace.states);
     workspace.counts.configurations += taken;
@@ -110,6 +113,10 @@ bool motion_proved(Workspace& workspace, std::span<const double> a, std::span<co
     }
     const Mask near = blocked_where_placed(workspace, workspace.enlarged, Wanted::ALL) & ((1U << taken) - 1);
     count -= taken;
+    // Every second level, as most motions are proved before, and the poses are known.
+    if (!are_states_free && near != 0 && level % 2 == 0 && blocked_where_placed(workspace, Wanted::FIRST) != 0) {
+      return false;
+    }
     const bool is_halvable =
         half * fastest >= limits.tolerance && level < DEEPEST_INTERVAL && count + 2 * LANES <= MOST_WAITING;
     if (near != 0 && !is_halvable) return false;

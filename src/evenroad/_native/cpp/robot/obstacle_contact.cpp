@@ -12,47 +12,37 @@ namespace evenroad::robot {
 
 namespace {
 
-/// The box around a body or a capsule in all lanes, made once, when the first block of obstacles is tested.
-template <class Placed>
-EVENROAD_INLINE const Box16& make_around(Placed& placed, float radius) {
-  placed.around = around_all(placed.centre, abs(placed.half) + spread(Vec3{radius, radius, radius}));
-  return placed.around;
-}
+/// Number of obstacles up to which they are tested one by one, because the box around all lanes costs more than it
+/// saves.
+constexpr int FEW_OBSTACLES = 6;
 
-/// Return which obstacles of a block are near a box.
-EVENROAD_INLINE Mask near_obstacles(const Block& block, const Box16& around) {
-  return below_zero(largest(abs(block.centre - around.centre) - block.half - around.half));
-}
+/// Finds the obstacles that sixteen boxes are near to.
+class Finder {
+ public:
+  explicit Finder(std::span<const RoughLimits> limits) : limits_(limits) {}
 
-/// Boxes around a body or a capsule, lane by lane.
-struct Boxes {
-  Vec3x16 centre, half;
-
-  template <class Placed>
-  EVENROAD_INLINE Boxes(const Placed& placed, float radius)
-      : centre(placed.centre), half(abs(placed.half) + spread(Vec3{radius, radius, radius})) {}
-
-  /// Return the mask of lanes in which they overlap the box around one obstacle.
-  EVENROAD_INLINE Mask near(const Block& block, int k) const {
-    const Vec3x16 there = spread(Vec3{block.centre.x[k], block.centre.y[k], block.centre.z[k]});
-    const Vec3x16 reach = spread(Vec3{block.half.x[k], block.half.y[k], block.half.z[k]});
-    return below_zero(largest(abs(centre - there) - half - reach));
-  }
-
-  /// Return which of some obstacles of a block they overlap in lanes that are not blocked.
-  EVENROAD_INLINE Mask near(const Block& block, Mask asked, Mask blocked) const {
+  /// Return which of some obstacles of a block are near in lanes that are not blocked; write those lanes of each.
+  EVENROAD_INLINE Mask near(const RoughBoxes& boxes, int number, Mask asked, Mask blocked, Mask (&lanes)[LANES]) {
+    const RoughLimits& block = limits_[number];
+    if (are_together_ && std::popcount(asked) > FEW_OBSTACLES) {
+      const int before = std::popcount(asked);
+      asked &= within_limits(around_all(boxes), block.all);
+      // In sixteen scattered configurations a body is near nearly everything: this pays in none of the others, then.
+      are_together_ = 2 * std::popcount(asked) < before;
+    }
     Mask met = 0;
     for (; asked != 0; asked &= asked - 1) {
       const int k = std::countr_zero(asked);
-      met |= static_cast<Mask>((near(block, k) & ~blocked) != 0) << k;
+      lanes[k] = within_limits(boxes, block.each[k]);
+      met |= static_cast<Mask>((lanes[k] & ~blocked) != 0) << k;
     }
     return met;
   }
-};
 
-/// Number of obstacles up to which they are tested one by one, because the box around all lanes costs more than it
-/// saves.
-constexpr int FEW_OBSTACLES = 5;
+ private:
+  std::span<const RoughLimits> limits_;
+  bool are_together_ = true;
+};
 
 constexpr int MOST_OPEN = 64;
 
@@ -64,9 +54,25 @@ struct Open {
 
 }  // namespace
 
-Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle) {
+Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle,
+                 Mask asked) {
   const float reach = radius + obstacle.rounding;
-  return below_zero(squared_distance(obstacle, capsule, samples) - reach * reach);
+  if (static_cast<std::size_t>(std::popcount(asked)) >= samples.size()) {
+    return asked & below_zero(squared_distance(obstacle, capsule, samples) - reach * reach);
+  }
+  // The spheres of one configuration after another.
+  Mask meeting = 0;
+  for (; asked != 0; asked &= asked - 1) {
+    const int lane = std::countr_zero(asked);
+    for (std::size_t first = 0; first < samples.size(); first += LANES) {
+      // What follows the last are spheres of other capsules.
+      const std::size_t count = std::min<std::size_t>(samples.size() - first, LANES);
+      const Floats16 squared = squared_distances(obstacle, lane_of(capsule.centre, lane), lane_of(capsule.half, lane),
+                                                 load<Floats16>(samples.data() + first));
+      if ((below_zero(squared - reach * reach) & ((1U << count) - 1)) != 0) meeting |= 1U << lane;
+    }
+  }
+  return meeting;
 }
 
 Mask inside_meeting(const Robot& robot, const PlacedRobot& placed, const Body& body, const Obstacle& obstacle,
@@ -120,6 +126,7 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
   const std::span<const float> samples = robot.samples;
   Open waiting[MOST_OPEN];
   int count = 0;
+  Finder finder(all.limits);
   const auto decide = [&](std::span<const Open> open, Mask blocked) {
     Mask touching = 0;
     for (const auto& [b, obstacle, capsule, lanes] : open) {
@@ -140,12 +147,11 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
     const Range capsules = robot.bodies[b].capsules;
     const bool many = capsules.size() > FEW, shaped = lengths.shapes_decide && robot.bodies[b].shape >= 0;
     for (int number = 0; number < blocks; number++) {
-      const Block& block = all.blocks[number];
-      Mask near_body = ALL_LANES;
+      Mask near_body = ALL_LANES, lanes[LANES];
       if (many) {
         PlacedBody& body = placed.bodies[b];
-        const Mask asked = near_obstacles(block, number == 0 ? make_around(body, 0) : body.around);
-        near_body = Boxes(body, 0).near(block, asked, blocked);
+        if (number == 0) body.rough = rough_boxes(body.centre, body.half);
+        near_body = finder.near(body.rough, number, ALL_LANES, blocked, lanes);
         if (near_body == 0) continue;
       }
       // By obstacle: lanes that the true shape must decide, and the first capsule that touches.
@@ -154,19 +160,18 @@ Mask meeting_layer(const Robot& robot, const Lengths& lengths, const Layer& laye
       for (int i = capsules.end - 1; i >= capsules.first; i--) {
         const float radius = lengths.capsules[i];
         PlacedCapsule& capsule = placed.capsules[i];
-        Mask near = layer.tested(i, number) & near_body;
-        // The first of several blocks prepares data for the others, even if it has no obstacle for this capsule.
-        if (many ? std::popcount(near) > 2 : blocks > 1 || std::popcount(near) > FEW_OBSTACLES) {
-          near &= near_obstacles(block, many || number == 0 ? make_around(capsule, radius) : capsule.around);
+        if (many || number == 0) {
+          capsule.rough = rough_boxes(capsule.centre, abs(capsule.half) + spread(Vec3{radius, radius, radius}));
         }
-        const Boxes boxes(capsule, radius);
+        Mask near = finder.near(capsule.rough, number, layer.tested(i, number) & near_body, blocked, lanes);
         for (; near != 0; near &= near - 1) {
           const int k = std::countr_zero(near);
           const bool again = (opened >> k & 1) != 0;
-          if ((boxes.near(block, k) & ~(again ? blocked | open[k] : blocked)) == 0) continue;
+          const Mask asked = lanes[k] & ~(again ? blocked | open[k] : blocked);
+          if (asked == 0) continue;
           const Obstacle& obstacle = layer.obstacles->rows[number * LANES + k];
           const Range of = robot.capsules[i].samples;
-          const Mask meeting = meeting_one(capsule, samples.subspan(of.first, of.size()), radius, obstacle);
+          const Mask meeting = meeting_one(capsule, samples.subspan(of.first, of.size()), radius, obstacle, asked);
           if (shaped) {
             if (meeting == 0) continue;
             if (!again) open[k] = 0, first[k] = i, opened |= 1U << k;

@@ -25,8 +25,10 @@ struct Contact {
 Mask meeting_obstacles(const Robot& robot, const Lengths& lengths, const Scene& scene, PlacedRobot& placed,
                        Mask blocked, Wanted wanted, Contact* found = nullptr);
 
-/// Return the mask of lanes in which a sphere along a capsule reaches into an obstacle.
-Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle);
+/// Return the mask of queried lanes in which a sphere along a capsule reaches into an obstacle.  Behind the samples,
+/// sixteen more numbers can be read.
+Mask meeting_one(const PlacedCapsule& capsule, std::span<const float> samples, float radius, const Obstacle& obstacle,
+                 Mask asked);
 
 /// Return the mask of lanes in which a ball inside a body's true shape comes within `near` of an obstacle.
 Mask inside_meeting(const Robot& robot, const PlacedRobot& placed, const Body& body, const Obstacle& obstacle,

@@ -50,6 +50,14 @@ EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, const Placed
   return detail::squared_distance(Form::CYLINDER, obstacle, centre, half, along);
 }
 
+/// Return the squared distances of sixteen points along one segment.
+EVENROAD_INLINE Floats16 squared_distances(const Obstacle& obstacle, Vec3 centre, Vec3 half, Floats16 along) {
+  Vec3x16 from = spread(centre) - spread(obstacle.centre), to = spread(half);
+  if (obstacle.form != Form::ALIGNED)
+    from = detail::turned_into(obstacle, from), to = detail::turned_into(obstacle, to);
+  return detail::squared_distance(obstacle.form, obstacle, plus(from, to, along));
+}
+
 /// Return the same for points relative to the obstacle's centre.
 EVENROAD_INLINE Floats16 squared_distance(const Obstacle& obstacle, Vec3x16 point) {
   if (obstacle.form != Form::ALIGNED) point = detail::turned_into(obstacle, point);

@@ -131,7 +131,7 @@ struct Check {
       Mask& done = tested.of(of.capsule, obstacle);
       if (done != 0) continue;
       done = ALL_LANES;
-      Mask meeting = meeting_one(of.placed, of.samples, of.radius, all.rows[obstacle]) & ~blocked;
+      Mask meeting = meeting_one(of.placed, of.samples, of.radius, all.rows[obstacle], ALL_LANES & ~blocked);
       if (of.shaped && meeting != 0) meeting = decide(of.body, obstacle, meeting);
       if (meeting == 0) continue;
       if (found != nullptr && blocked == 0) *found = {Contact::With::OBSTACLE, of.capsule, all.rows[obstacle].number};

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "robot/robot.hpp"
+#include "robot/rough_boxes.hpp"
 
 namespace evenroad::robot {
 
@@ -24,12 +25,12 @@ EVENROAD_INLINE Floats16 cut(Floats16 share) { return clamp(share, spread(-1), s
 
 struct PlacedBody {
   Vec3x16 centre, half;  // half extents of the box around its capsules, along the root's axes
-  Box16 around;          // in all lanes: written by the check against obstacles
+  RoughBoxes rough;      // that box: written by the check against obstacles
 };
 
 struct PlacedCapsule {
   Vec3x16 centre, half;  // half is the vector to an endpoint of the segment
-  Box16 around;
+  RoughBoxes rough;      // around its spheres: as above
 };
 
 /// The last decision about two nodes of trees of hulls.

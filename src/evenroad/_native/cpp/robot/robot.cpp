@@ -126,6 +126,7 @@ void add_capsules(Robot& robot, const GivenRobot& given) {
               from.radius.size() == count && from.covering.size() == count && from.padding.size() == count,
           "arrays of capsules must be equally long");
   for (double share : from.samples) robot.samples.push_back(static_cast<float>(share));
+  robot.samples.resize(robot.samples.size() + LANES);
   for (std::size_t i = 0; i < count; i++) {
     require(from.first_sample[i] >= 0 && from.first_sample[i] < from.first_sample[i + 1] &&
                 from.first_sample[i + 1] <= static_cast<std::int64_t>(from.samples.size()),

@@ -94,7 +94,7 @@ struct Robot {
   Joints joints;
   std::vector<Frame> frames;  // parents first; without the root's
   std::vector<Capsule> capsules;
-  std::vector<float> samples;  // along segments, from -1 to 1
+  std::vector<float> samples;  // along segments, from -1 to 1; behind them sixteen more can be read
   std::vector<Body> bodies;
   std::vector<BodyPair> body_pairs;  // the last ones are decided by hulls
   std::vector<CapsulePair> pairs;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robot/hull_contact.hpp"
+#include "robot/rough_boxes.hpp"
 #include "robot/surface.hpp"
 
 namespace evenroad::robot {
@@ -53,6 +54,7 @@ struct Obstacles {
   std::vector<Obstacle> rows;
   HullTree<float> hulls;  // a leaf for each, in its frame
   std::vector<Block> blocks;
+  std::vector<RoughLimits> limits;           // the same boxes in whole numbers
   std::vector<int> row_of;                   // by number in the scene, -1 for none
   std::unique_ptr<const ObstacleTree> tree;  // if there are many
 };
