@@ -28,6 +28,10 @@ _BEYOND = 100.0
 """Least distance of the default bounds from the obstacles [m]."""
 HORIZON = 1000.0
 """Default time up to which obstacles keep their velocities [s]."""
+_MOST_OF_BOUND = 2.5
+"""Largest lower bound of a time, as a multiple of that without obstacles."""
+_WORDS_OF_BOUND = 4_000_000
+"""Size of the lattice of a lower bound, in words of eight bytes: found in about half a second."""
 _NEAREST = 1e-2
 """Distance up to which an obstacle is named that is in the way, beyond the radius [m]."""
 
@@ -216,6 +220,18 @@ class FlightWorld(OneOrMany):
         """
         limit, states = require_positive("horizon", horizon, or_zero=True, at_most=FARTHEST), as_batch("path", path, 6)
         return self.airspace.free_until(states, limit) if self._outside(states[:1]).all() else 0.0
+
+    def least_length(self, start: Floats, goals: Floats) -> float:
+        """Return a time that no flight from the start, (6,), to any goal, (g, 6), beats; at most 2.5 times the least.
+
+        It heeds obstacles that stay and are as high as the bounds: see the guide.
+        """
+        times = self.space.distance(np.broadcast_to(start, goals.shape), goals)
+        begin = np.ascontiguousarray(start)
+        return min(
+            self.airspace.least_time(begin, np.ascontiguousarray(goal), _MOST_OF_BOUND * float(time), _WORDS_OF_BOUND)
+            for goal, time in zip(goals, times, strict=True)
+        )
 
     def _outside(self, states: Floats) -> Bools:
         """Return for each state, (n, 6), whether the middle of the ball is inside of no closed mesh: (n,)."""

@@ -3,6 +3,7 @@
 
 #include "bind/arrays.hpp"
 #include "flight/follow.hpp"
+#include "flight/least_time.hpp"
 #include "flight/query.hpp"
 
 namespace evenroad::bind {
@@ -13,6 +14,8 @@ namespace {
 
 /// Larger boxes along the axes are cut off [m].
 constexpr double LARGEST_BODY = 4.0 * FARTHEST;
+/// Largest lattice of a lower bound.
+constexpr std::int64_t MOST_WORDS = std::int64_t{1} << 28;
 
 flight::Vector vector_of(std::span<const double> row) { return {row[0], row[1], row[2]}; }
 
@@ -237,6 +240,16 @@ nb::object flights_free(const flight::Airspace& airspace, nb::handle a, nb::hand
   return as_bools(std::move(free), {flights.from.count()});
 }
 
+/// A lower bound of the times of free flights, at most `most`.
+double flight_least_time(const flight::Airspace& airspace, nb::handle start, nb::handle goal, double most,
+                         std::int64_t words) {
+  const flight::State from = state_of(start, "start"), to = state_of(goal, "goal");
+  require(most >= 0.0 && most <= FARTHEST, "most must be from 0 to 1e9");
+  require(words >= 0 && words <= MOST_WORDS, "words must be from 0 to 2^28");
+  return without_gil(
+      [&] { return flight::least_time_among(airspace, from, to, most, static_cast<std::size_t>(words)); });
+}
+
 /// The distance of a position from the nearest body, at most that far, and its number.
 flight::Bodies::Nearest nearest_body(const flight::Airspace& airspace, nb::handle at, double most) {
   const Floats numbers(at, "at");
@@ -286,6 +299,7 @@ void add_flight(nb::module_& module) {
       .def("follow", &flight_followed, "path"_a.none(), "elapsed"_a, "here"_a.none())
       .def("stop", &flight_stopped, "here"_a.none())
       .def("free_until", &flight_free_until, "path"_a.none(), "horizon"_a)
+      .def("least_time", &flight_least_time, "start"_a.none(), "goal"_a.none(), "most"_a, "words"_a)
       .def("path_free", &flight_free, "path"_a.none())
       .def("nearest", &nearest_body, "at"_a.none(), "most"_a);
   nb::class_<flight::FlightQuery>(part, "FlightQuery", "A search for a path between two free states.")

@@ -37,6 +37,8 @@ class Airspace {
   const Bounds& bounds() const { return bounds_; }
   const Limits& limits() const { return limits_; }
   double radius() const { return radius_; }
+  /// A distance from a body at which the ball touches it, whatever the rounding.
+  double surely_touching() const { return radius_ - rounding_; }
 
   bool keeps_limits(const State& state) const {
     for (std::size_t k = 0; k < 3; k++) {

@@ -63,6 +63,15 @@ class Bodies {
   };
   Nearest nearest(const Vector& at, double time, double most) const;
   std::span<const std::uint32_t> movers() const { return movers_; }
+  /// Return the bodies that do not move.
+  std::span<const std::uint32_t> statics() const { return order_; }
+  /// Say whether a point is this near to a body that does not move.
+  bool is_near(std::uint32_t body, const Vector& at, double distance) const {
+    const Near near = near_to(body, at);
+    return squared_length(at - near.point) <= (distance + near.rounding) * (distance + near.rounding);
+  }
+  /// Write the corners of a box around a body.
+  void write_box(std::uint32_t body, Vector& low, Vector& high) const;
   std::size_t count() const { return solids_.size() + triangles_.size() + balls_.size(); }
 
  private:
@@ -78,7 +87,6 @@ class Bodies {
   };
 
   Near near_to(std::uint32_t body, const Vector& at) const;
-  void write_box(std::uint32_t body, Vector& low, Vector& high) const;
   std::uint32_t build(std::uint32_t first, std::uint32_t end);
   Parabola seen_from(std::uint32_t mover, const Parabola& curve, double time) const;
   double nearest_share(std::uint32_t body, const Vector& from, const Vector& to) const;
