@@ -5,6 +5,7 @@ import os
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import evenroad as er
 from evenroad.loading.cache import file_of
@@ -92,6 +93,28 @@ def test_an_obj_has_the_colours_of_its_materials(arm, tmp_path):
     assert sorted(shown) == [[0, 0, 1], [1, 0, 0]]
     (tmp_path / "tip.mtl").write_text(MATERIALS.replace("0 0 1", "0 1 1"))
     assert colours(model) == [(0, 255, 255), (255, 0, 0)]
+
+
+@pytest.mark.parametrize("changed", ["other.mtl", "skin.png", "late.mtl"])
+def test_a_kept_drawing_is_drawn_anew_if_a_file_that_its_mesh_names_changes(arm, tmp_path, changed):
+    """The materials have another name than the mesh, one has a texture, and one file comes later."""
+    corners = "".join(f"v {0.01 * i} {0.1 * (i % 7)} {0.1 * (i % 11)}\nvt 0.5 0.5\n" for i in range(2200))
+    faces = "".join(f"f {i}/{i} {i + 1}/{i + 1} {i + 2}/{i + 2}\n" for i in range(1, 2199))
+    (tmp_path / "tip.obj").write_text(
+        f"mtllib {'late' if changed == 'late.mtl' else 'other'}.mtl\n{corners}usemtl skin\n{faces}"
+    )
+    material = "newmtl skin\nKd 1 0 0\nmap_Kd skin.png\n"
+    if changed != "late.mtl":
+        (tmp_path / "other.mtl").write_text(material)
+    Image.new("RGB", (4, 4), (32, 224, 32)).save(tmp_path / "skin.png")
+    model = arm(mesh("tip.obj"))
+    before = colours(model)
+    assert colours(model) == before
+    if changed == "skin.png":
+        Image.new("RGB", (4, 4), (224, 32, 32)).save(tmp_path / "skin.png")
+    else:
+        (tmp_path / changed).write_text(material.replace("map_Kd skin.png\n", ""))
+    assert colours(model) != before
 
 
 def test_a_dae_has_the_colours_of_its_materials(arm, tmp_path):

@@ -73,9 +73,13 @@ class ColouredMesh(NamedTuple):
     colours: Colours | None
 
 
-def load_coloured(path: str | os.PathLike[str]) -> list[ColouredMesh]:
-    """Read the objects of a file with the colours of their materials; errors as `load_mesh`."""
-    return [ColouredMesh(mesh, colours) for _, mesh, colours in _load(Path(path), 1.0, with_colours=True)]
+def load_coloured(path: str | os.PathLike[str], beside: set[Path] | None = None) -> list[ColouredMesh]:
+    """Read the objects of a file with the colours of their materials; errors as `load_mesh`.
+
+    The files of materials and textures that it looks for are added to `beside`, whether or not they exist.
+    """
+    beside = set() if beside is None else beside
+    return [ColouredMesh(mesh, colours) for _, mesh, colours in _load(Path(path), 1.0, beside)]
 
 
 def load_objects(path: str | os.PathLike[str], *, scale: float = 1.0) -> list[tuple[str, TriangleMesh]]:
@@ -83,8 +87,8 @@ def load_objects(path: str | os.PathLike[str], *, scale: float = 1.0) -> list[tu
     return [(name, mesh) for name, mesh, _ in _load(Path(path), require_positive("scale", scale))]
 
 
-def _load(file: Path, factor: float, *, with_colours: bool = False) -> list[tuple[str, TriangleMesh, Colours | None]]:
-    """Return name, mesh and colours of each object of a file that has triangles."""
+def _load(file: Path, factor: float, beside: set[Path] | None = None) -> list[tuple[str, TriangleMesh, Colours | None]]:
+    """Return name, mesh and colours of each object of a file that has triangles; no colours without `beside`."""
     if not file.is_file():
         raise BrokenFile(f"the mesh {file} is missing")
     if file.suffix.lower() == ".bt":
@@ -92,7 +96,7 @@ def _load(file: Path, factor: float, *, with_colours: bool = False) -> list[tupl
 
         vertices, triangles = read_octomap(file)
         return [(file.stem, TriangleMesh(factor * vertices, triangles, file.name), None)]
-    unit, parts = _parts(file, with_colours)
+    unit, parts = _parts(file, beside)
     if not any(len(part.triangles) for part in parts):
         raise BrokenFile(f"the mesh {file} is empty or cut off: a body without triangles would never collide")
     if file.suffix.lower() == ".ply" and _is_cut_off(file.read_bytes(), len(parts[0].triangles)):
@@ -116,7 +120,7 @@ class _Object(NamedTuple):
     colours: Colours | None = None
 
 
-def _parts(file: Path, with_colours: bool) -> tuple[float, list[_Object]]:
+def _parts(file: Path, beside: set[Path] | None) -> tuple[float, list[_Object]]:
     """Return a file's unit [m], and its objects."""
     if file.suffix.lower() == ".stl" and (corners := _binary_stl(file.read_bytes())) is not None:
         return 1.0, [_Object(file.stem, corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))]
@@ -124,7 +128,7 @@ def _parts(file: Path, with_colours: bool) -> tuple[float, list[_Object]]:
         import trimesh
 
         require_bounded(file)
-        scene = trimesh.load_scene(file, process=False, resolver=_files_beside(file))
+        scene = trimesh.load_scene(file, process=False, resolver=_files_beside(file, beside))
         unit = 1.0 if scene.units is None else trimesh.units.unit_conversion(scene.units, "meters")
         keys = [scene.graph[node][1] for node in scene.graph.nodes_geometry]
         require_few_triangles(sum(len(getattr(scene.geometry[key], "faces", ())) for key in keys), file.stat().st_size)
@@ -141,7 +145,7 @@ def _parts(file: Path, with_colours: bool) -> tuple[float, list[_Object]]:
                 str(each.metadata["node"]),
                 np.array(each.vertices, dtype=float),
                 np.array(each.faces, dtype=np.int64),
-                _colours_of(each) if with_colours else None,
+                None if beside is None else _colours_of(each),
             )
             for each in solid
         ]
@@ -170,13 +174,15 @@ def _colours_of(mesh: Trimesh) -> Colours | None:
     return np.array(look.face_colors[:, :3], dtype=np.uint8)
 
 
-def _files_beside(file: Path) -> object:
-    """Return the resolver of files that a mesh names: those in its folder, and no pipe or device."""
+def _files_beside(file: Path, found: set[Path] | None) -> object:
+    """Return the resolver of files that a mesh names: those in its folder, and no pipe or device; `found` gets them."""
     from trimesh.resolvers import FilePathResolver
 
     class FilesBeside(FilePathResolver):  # type: ignore[misc]
         def absolute(self, name: str) -> Path:
             path = Path(super().absolute(name))
+            if found is not None:
+                found.add(path)
             with suppress(FileNotFoundError):
                 require_file(path)
             return path

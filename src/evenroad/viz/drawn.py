@@ -18,7 +18,7 @@ from evenroad._arrays import unique_rows
 from evenroad._files import atomic_write, cache_folder, read_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad._seal import read_sealed, sealed
-from evenroad.errors import EvenroadError
+from evenroad.errors import BrokenFile, EvenroadError
 from evenroad.geometry.mesh import TriangleMesh, scaled
 from evenroad.geometry.mesh_file import load_coloured
 from evenroad.geometry.shapes import Mesh
@@ -32,7 +32,7 @@ _GRAIN = 0.003
 """Size of the smallest details that are shown of large meshes [m]."""
 _MANY = 2000
 """Number of triangles beyond which a link is simplified."""
-_FORMAT = 2
+_FORMAT = 3
 """Version of the files that keep drawings."""
 
 
@@ -67,52 +67,54 @@ def collision_drawing(file: RobotFile) -> Drawing:
 
 def _drawing(drawn: Sequence[Drawn]) -> Drawing:
     """Return bodies from the cache, or of their files; large meshes are kept, as they take seconds to read."""
+    beside: set[Path] = set()
     if not any(isinstance(each.shape, Mesh) for each in drawn):
-        return _read(drawn)
+        return _read(drawn, beside)
     try:
         key = _key_of(drawn)
     except EvenroadError as error:
         return Drawing({}, str(error))
     path = cache_folder() / "pictures" / f"{key[:32]}.npz"
     content = read_sealed(path, key, "the drawing of a robot")
-    if content is not None:
-        return Drawing(_restored(content))
-    whole = _read(drawn)
+    if content is not None and (links := _restored(content)) is not None:
+        return Drawing(links)
+    whole = _read(drawn, beside)
     found = whole._replace(links={link: _simplified(part) for link, part in whole.links.items()})
     # What is missing now may be there next time, as an extra is installed.
     if not found.problem and any(len(part.corners) > _MANY for part in whole.links.values()):
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
             with atomic_write(path) as stream:
-                stream.write(sealed(_written(found.links), key))
+                stream.write(sealed(_written(found.links, beside), key))
     return found
 
 
 def _key_of(drawn: Sequence[Drawn]) -> str:
-    """Return the hash of all that drawings depend on, the content of meshes and their colours included."""
+    """Return the hash of all that drawings depend on, but for the files that meshes name."""
     digest = hashlib.sha256(f"{_FORMAT}|{__version__}".encode())
     for link, shape, colour in ((each.link, each.shape, each.colour) for each in drawn):
         if isinstance(shape, EvenroadError):
             digest.update(fingerprint_of(link, str(shape)).encode())
         elif isinstance(shape, Mesh) and isinstance(shape.source, Path):
             digest.update(fingerprint_of(link, colour, shape.scale, shape.pose, str(shape.source)).encode())
-            beside = shape.source.with_suffix(".mtl")
-            for path in (shape.source, *([beside] if beside.is_file() else [])):
-                digest.update(hashlib.sha256(read_known(path, "mesh")).digest())
+            digest.update(hashlib.sha256(read_known(shape.source, "mesh")).digest())
         else:
             digest.update(fingerprint_of(link, colour, shape).encode())
     return digest.hexdigest()
 
 
-def _read(drawn: Sequence[Drawn]) -> Drawing:
-    """Return bodies as their files have them, without the links of which one cannot be read."""
+def _read(drawn: Sequence[Drawn], beside: set[Path]) -> Drawing:
+    """Return bodies as their files have them, without the links of which one cannot be read.
+
+    The files of materials and textures that meshes name are added to `beside`.
+    """
     of_link: dict[str, list[Part]] = {}
     problems: dict[str, str] = {}
     for each in drawn:
         try:
             if isinstance(each.shape, EvenroadError):
                 raise each.shape
-            of_link.setdefault(each.link, []).extend(_parts_of(each))
+            of_link.setdefault(each.link, []).extend(_parts_of(each, beside))
         except EvenroadError as error:
             problems.setdefault(each.link, str(error))
     shown = {link: parts for link, parts in of_link.items() if link not in problems}
@@ -120,7 +122,7 @@ def _read(drawn: Sequence[Drawn]) -> Drawing:
     return Drawing(links, next(iter(problems.values()), ""))
 
 
-def _parts_of(drawn: Drawn) -> list[Part]:
+def _parts_of(drawn: Drawn, beside: set[Path]) -> list[Part]:
     """Return the bodies of a shape: a mesh has the colours of its own materials, if it has any."""
     shape, colour = drawn.shape, drawn.colour or PLAIN
     assert not isinstance(shape, EvenroadError)
@@ -133,13 +135,16 @@ def _parts_of(drawn: Drawn) -> list[Part]:
             (shape.pose.apply(scaled(mesh, shape.scale).vertices), mesh.triangles),
             colour if own is None else own.astype(np.int16),
         )
-        for mesh, own in load_coloured(shape.source)
+        for mesh, own in load_coloured(shape.source, beside)
     ]
 
 
-def _written(parts: Mapping[str, Part]) -> bytes:
+def _written(parts: Mapping[str, Part], beside: set[Path]) -> bytes:
     out = BytesIO()
+    named = sorted(map(str, beside))
     arrays = {
+        "beside": np.array(named, dtype=np.str_),
+        "contents": np.array([_content_of(name) for name in named], dtype=np.str_),
         "links": np.array(list(parts)),
         "cuts": np.cumsum([len(part.corners) for part in parts.values()])[:-1],
         "corners": np.concatenate([part.corners for part in parts.values()], dtype=np.float32),
@@ -150,13 +155,24 @@ def _written(parts: Mapping[str, Part]) -> bytes:
     return out.getvalue()
 
 
-def _restored(content: bytes) -> dict[str, Part]:
+def _restored(content: bytes) -> dict[str, Part] | None:
+    """Return bodies that were kept; None if a file of materials or textures has changed since."""
     with np.load(BytesIO(content)) as kept:
+        if [_content_of(name) for name in kept["beside"].tolist()] != kept["contents"].tolist():
+            return None
         links, cuts = kept["links"].tolist(), kept["cuts"]
         corners, normals = (np.split(kept[name].astype(np.float64), cuts) for name in ("corners", "normals"))
         colours = np.split(kept["colours"], cuts)
     rows = zip(links, corners, normals, colours, strict=True)
     return {link: Part(corner, normal, colour) for link, corner, normal, colour in rows}
+
+
+def _content_of(name: str) -> str:
+    """Return the hash of a file's content; "" if it cannot be read."""
+    try:
+        return hashlib.sha256(read_known(name, "material")).hexdigest()
+    except BrokenFile:
+        return ""
 
 
 def _simplified(part: Part) -> Part:
