@@ -66,7 +66,7 @@ def _explained(
         # The class that was called may have its __init__ from another.
         name = type(given[0]).__name__
     every = {key: each for key, each in signature(function).parameters.items() if key != "self"}
-    taken = {key: each for key, each in every.items() if each.kind is not Parameter.VAR_KEYWORD}
+    taken = {key: each for key, each in every.items() if each.kind is not Parameter.VAR_KEYWORD and key[0] != "_"}
     keywords = [key for key, each in taken.items() if each.kind is not Parameter.POSITIONAL_ONLY]
     strange = [key for key in named if key not in keywords]
     if strange and len(taken) == len(every):

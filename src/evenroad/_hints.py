@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
+from evenroad import errors
 from evenroad.errors import UnknownName, listed, shown
 
 _TABLE = Path(__file__).with_name("_elsewhere.txt")
@@ -117,7 +118,7 @@ def _alike(name: str, known: Iterable[str]) -> list[str]:
 @cache
 def _homes_of(name: str) -> tuple[str, ...]:
     """Return where the parts of evenroad have a public name, in any case of letters."""
-    found = []
+    found = [f"evenroad.errors.{each}" for each in vars(errors) if _plain(each) == _plain(name)]
     for stub in sorted(Path(__file__).parent.glob("[a-z]*/__init__.pyi")):
         lines = stub.read_text(encoding="utf-8").splitlines()
         names = [line.rpartition(" as ")[2] for line in lines if line.startswith("from ")]

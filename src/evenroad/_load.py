@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from evenroad._call import explains_calls
 from evenroad._checks import as_file
-from evenroad._files import read_json_file
+from evenroad._files import read_json_file, read_known
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
 
 if TYPE_CHECKING:
@@ -72,12 +72,19 @@ def load(
 
         return PolygonMap(path)
     from evenroad.scenes.scene_file import SCENES, is_scene, load_scene
+    from evenroad.world.gridmap.load import SHIPPED, find_map
 
+    if not suffix and not (file.exists() or find_map(path).is_file() or file.name in SCENES):
+        raise UnknownName.among(
+            "file, scene or map", file.name, (*SCENES, *(name.partition(".")[0] for name in SHIPPED))
+        )
     if suffix in _SCENES or (suffix in ("", ".yaml", ".yml") and (file.stem in SCENES or is_scene(path))):
         return load_scene(path)
     if suffix in _MAPS or not suffix:
         from evenroad.world.gridmap import load_map
 
+        if suffix in (".yaml", ".yml") and file.is_file() and b"joint_names:" in read_known(path, "map")[:4096]:
+            raise BrokenFile(f"{path} is a trajectory for ROS 2; trajectories are read from their .json")
         return load_map(path)
     raise UnknownName.among("kind of file", suffix, (".json", ".roadmap", _POLYGONS, *_POINTS, *_SCENES, *_MAPS))
 

@@ -6,7 +6,7 @@ import trimesh
 from PIL import Image
 
 from evenroad.cli.view import View
-from evenroad.robot import held_values
+from evenroad.robot import find_robot, held_values
 from evenroad.viz import arm
 
 REACH = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture")
@@ -28,8 +28,19 @@ def test_a_plan_becomes_a_moving_picture_and_a_scene_shows_the_arm_at_rest(run, 
         assert picture.convert("RGB").tobytes() != first
 
 
+@pytest.mark.parametrize("what", ["box-reach.yaml", "office", "ur5", "arm.urdf", "set.npy"])
+def test_a_scene_a_map_a_robot_and_points_are_pictures(run, tmp_path, what):
+    (tmp_path / "arm.urdf").write_bytes(find_robot("arm7")[0].read_bytes())
+    run("points", "-n", "64", "-d", "2", "-o", "set.npy")
+    code, out, err = run("view", what, "--png", "out.png")
+    assert (code, out, err) == (0, "wrote out.png\n", "")
+    with Image.open(tmp_path / "out.png") as picture:
+        assert len(picture.convert("RGB").getcolors(1 << 24)) >= 2
+
+
 @pytest.mark.parametrize(("words", "said"), [
-    (["box-reach.yaml"], "give --robot"), (["none.json"], "cannot read the plan or trajectory none.json"),
+    (["box-reach.yaml", "--html", "out.html"], "--robot"),
+    (["none.json"], "cannot read the plan or trajectory none.json"),
     (["bad.json"], "is not a plan of evenroad"),
     (["box-reach.yaml", "--robot", "ur5", "--gif", "out.png"], "--gif must name a .gif"),
     (["box-reach.yaml", "--robot", "ur5", "--port", "70000"], "port"),

@@ -17,6 +17,7 @@ from tests.refused import refused
 CELLS = np.zeros((40, 60), dtype=bool)
 MAP = er.GridMap(CELLS, resolution=0.1)
 ON_A_MAP = er.plan(MAP.world(radius=0.2), (0.5, 3.5), (5.5, 3.5))
+FLYING = er.FlightWorld(er.Scene([er.Cylinder(0.2, 6.0, xyz=(4, 0, 3), name="tree")]), speed=3.0, acceleration=4.0)
 OF_AN_ARM = er.plan(er.ArmWorld("ur5"), (0, -1.5, 0, -1.5, 0, 0), (0.5, -1.5, 0.5, -1.5, 0, 0))
 
 
@@ -86,8 +87,11 @@ def test_a_trajectory_is_served_with_its_times(pages):
 @pytest.mark.parametrize("what", [
     er.load_robot("ur5"),
     er.load_scene("shelf"),
-    Task([MoveTo("inside"), MoveTo("home")]).plan(er.ArmWorld("ur5", "box-reach"), "home"),
+    Task([MoveTo("inside")]).plan(er.ArmWorld("ur5", "box-reach"), "home").motions[0],
     "office.yaml",
+    er.load_map("office.yaml").world(radius=0.2),
+    FLYING,
+    er.plan(FLYING, er.State((0, 0, 2)), er.State((8, 0, 2))).trajectory(),
 ], ids=lambda what: type(what).__name__)  # fmt: skip
 def test_what_has_a_picture_is_shown(what, notebook):
     picture = er.show(what)
@@ -95,6 +99,15 @@ def test_what_has_a_picture_is_shown(what, notebook):
     colours = np.unique(np.asarray(picture).reshape(-1, len(picture.getbands())), axis=0)
     assert len(colours) >= 2
     assert min(picture.size) > 200
+
+
+def test_a_task_is_a_page_that_plays(notebook):
+    page = er.show(Task([MoveTo("inside"), MoveTo("home")]).plan(er.ArmWorld("ur5", "box-reach"), "home"))
+    try:
+        assert notebook == [(page.address, "100%", shows.HEIGHT)]
+        assert '"title":"solved: 2 motions' in page.page()
+    finally:
+        page.close()
 
 
 def test_a_saved_plan_is_shown_by_its_name(pages, tmp_path):

@@ -18,6 +18,7 @@ from evenroad.cli.trajectory import require_meshes_free
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.constraints.differential_drive import DifferentialDrive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
+from evenroad.flight.flight_world import FlightWorld
 from evenroad.planning.problem import Problem
 from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
@@ -42,7 +43,8 @@ def sent_plan(record: Json, file: Path, fastest: float) -> tuple[Trajectory, str
     """
     plan = plan_file_of(record, file)
     if not hasattr(plan.problem.world, "robot"):
-        raise NotAvailable(f"{file} is a plan on a map; plans of arms are sent")
+        kind = "a flight" if isinstance(plan.problem.world, FlightWorld) else "a plan on a map"
+        raise NotAvailable(f"{file} is {kind}; plans of arms are sent")
     _require_unchanged(plan.changed, file)
     value = record.get("world")
     if isinstance(value, dict) and (value.get("keeps") or record.get("deviation")):

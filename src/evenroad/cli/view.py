@@ -5,12 +5,12 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._files import read_json_file, require_writable_folder
+from evenroad._files import atomic_write, read_json_file, require_writable_folder
 from evenroad._time_limit import within
 from evenroad.cli.options import Positional
 from evenroad.cli.plan import RobotOptions
@@ -28,12 +28,16 @@ from evenroad.planning.read_problem import arm_problem
 from evenroad.planning.reading import Reading
 from evenroad.planning.result import PlanResult
 from evenroad.roadmap import Budget
+from evenroad.saved.world_value import file_in
 from evenroad.task.result import TaskResult
 from evenroad.task.save import is_task, load_task_result
 from evenroad.trajectory.car import are_free
 from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.corners import drivable
 from evenroad.viz.browser import how_to_open, open_browser
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 SECONDS = 0.5
 """Time limit for planning again while a start or goal is dragged [s]."""
@@ -50,7 +54,8 @@ class View(RobotOptions):
     """
 
     world: Positional[Path]
-    """A plan, a trajectory or a task that was saved (.json); or a scene (.yaml), with --robot."""
+    """A plan, a trajectory or a task that was saved (.json); or a scene (.yaml), with --robot.  A picture is shown of a
+    scene alone, a map, a robot or points."""
     html: Path | None = None
     """Write one file that plays offline: play, pause, speed, joints, clearance; nothing is opened."""
     png: Path | None = None
@@ -81,6 +86,13 @@ class View(RobotOptions):
                 require_writable_folder(file)
         if (done := self._task()) is not None:
             return self._show_task(done)
+        if (picture := self._picture()) is not None:
+            file = Path(f"{self.world.stem}-view.png") if self.png is None else self.png
+            picture.save(file)
+            print(f"wrote {file}")
+            if self.png is None:
+                open_browser(file.resolve().as_uri())
+            return 0
         plan = self.plan_file()
         if plan.changed:
             print(f"evenroad: the {' and '.join(plan.changed)} changed since this was planned", file=sys.stderr)
@@ -92,14 +104,12 @@ class View(RobotOptions):
         if self.gif is not None:
             self._save_gif(plan, arm)
         if self.html is not None:
-            self._save_page(plan, self.html)
+            self._write_page(self._page(plan))
         if all(file is None for _, file, _ in named):
             if arm:
                 self._serve(plan)
             else:
-                page = Path(f"{self.world.stem}.html")
-                self._save_page(plan, page)
-                open_browser(page.resolve().as_uri())
+                self._write_page(self._page(plan))
         return 0
 
     def _task(self) -> TaskResult | None:
@@ -112,25 +122,52 @@ class View(RobotOptions):
         return None if made_by is None else run_task_of(made_by, self.world).planned()
 
     def _show_task(self, done: TaskResult) -> int:
-        """Draw the motions of a task's answer; return 0."""
-        if self.html is not None or self.gif is not None:
-            raise NotAvailable("the answer to a task is drawn, with --png; --html and --gif are of one plan")
-        file = Path(f"{self.world.stem}.png") if self.png is None else self.png
-        done.plot(file)
-        print(f"wrote {file}")
-        if self.png is None:
-            open_browser(file.resolve().as_uri())
+        """Play the motions of a task's answer, or draw them; return 0."""
+        if self.gif is not None:
+            raise NotAvailable("the answer to a task is played with --html and drawn with --png; --gif is of one plan")
+        if self.png is not None:
+            done.plot(self.png)
+            print(f"wrote {self.png}")
+        if self.html is not None or self.png is None:
+            from evenroad.viz.task_page import page_of_task
+
+            self._write_page(page_of_task(done, self._file_of_task()))
         return 0
+
+    def _file_of_task(self) -> RobotFile | None:
+        """Return the robot's file that a saved task names, if it is still there."""
+        record = read_json_file(self.world, "task")
+        parts = [part for motion in record["motions"] for part in motion["parts"]] if is_task(self.world) else []
+        return next((file_in(part["world"]) for part in parts if isinstance(part.get("world"), dict)), None)
+
+    def _write_page(self, text: str) -> None:
+        """Write a page that plays offline; open it unless its file is named."""
+        page = Path(f"{self.world.stem}.html") if self.html is None else self.html
+        with atomic_write(page) as file:
+            file.write(text.encode())
+        print(f"wrote {page}")
+        if self.html is None:
+            open_browser(page.resolve().as_uri())
+
+    def _picture(self) -> Image.Image | None:
+        """Return the picture of a map, a scene or points, or of a robot; None of what is a plan, or becomes one."""
+        if self.world.suffix.lower() == ".json" or self.robot is not None:
+            return None
+        if self.html is not None or self.gif is not None:
+            raise NotAvailable(
+                f"of {self.world} there is a picture, with --png; --html and --gif show a plan, as evenroad plan"
+                " writes it, or one in a scene with --robot"
+            )
+        from evenroad.viz.picture_of import opened, picture_of
+
+        return picture_of(opened(self.world))
 
     def plan_file(self) -> PlanFile:
         """Return the plan, or one that is made in the scene."""
         if self.world.suffix.lower() == ".json":
             plan = read_plan(self.world, self.robot, self.options())
             return plan if self.n is None else replace(plan, result=self._planned(plan.problem), trajectory=None)
-        if self.robot is None:
-            raise InvalidValue(
-                "give --robot, the arm that moves in this scene, or a plan: evenroad plan writes one, also on a map"
-            )
+        assert self.robot is not None, "without one there is a picture"
         goal = self.start if self.goal is None else self.goal
         problem = arm_problem(self.robot, self.world, self.start, goal, Reading(), **self.options())
         return PlanFile(problem, self._planned(problem))
@@ -160,11 +197,10 @@ class View(RobotOptions):
         save_arm_gif(self.gif, plan.result, plan.problem.arm, self._file(plan))
         print(f"wrote {self.gif}")
 
-    def _save_page(self, plan: PlanFile, path: Path) -> None:
-        from evenroad.viz.player import save_page
+    def _page(self, plan: PlanFile) -> str:
+        from evenroad.viz.player import page_of
 
-        save_page(path, plan.result, file=self._file(plan), timed=_times(plan))
-        print(f"wrote {path}")
+        return page_of(plan.result, file=self._file(plan), timed=_times(plan))
 
     def _serve(self, plan: PlanFile) -> None:
         from evenroad.viz.page import ArmPage

@@ -74,9 +74,15 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
     if suffix == ".csv":
         try:
             require_file(path)
-            return PointSet(np.loadtxt(path, delimiter=",", ndmin=2))
+            rows = np.loadtxt(path, delimiter=",", ndmin=2)
         except (OSError, UnicodeDecodeError) as error:
             raise BrokenFile(f"cannot read the points {path}: {error}") from error
+        except ValueError as error:
+            raise BrokenFile(
+                f"{path} is no table of points, which has numbers alone ({error}); a plan or a trajectory is read from"
+                " its .json"
+            ) from error
+        return PointSet(rows)
     if suffix != ".npz":
         with reading(path, ".npy array of shape (n, d)", b"\x93NUMPY"), open_file(path) as file:
             array = read_array(file, os.path.getsize(path))

@@ -194,17 +194,21 @@ class TaskResult:
         """
         if not self.solved:
             raise InvalidValue(f"there is no trajectory: {self.message}")
-        timed = timed_parts(self, options)
-        pauses: list[float] = []
-        pause, parts = 0.0, iter(self.motions)
-        for step in self.steps:
-            if isinstance(step, Wait):
-                pause += step.seconds
-            elif isinstance(step, Move):
-                moving = [part for part in next(parts).parts if part.cost]
-                pauses += [pause, *[0.0] * (len(moving) - 1)] if moving else []
-                pause = 0.0 if moving else pause
-        return joined([each for _, each in timed], [*pauses, pause] if pauses else [0.0, pause], self.fingers)
+        return joined([each for _, each in timed_parts(self, options)], pauses_of(self), self.fingers)
+
+
+def pauses_of(done: TaskResult) -> list[float]:
+    """Return how long a task waits before each part in which something moves, and at its end [s]."""
+    pauses: list[float] = []
+    pause, parts = 0.0, iter(done.motions)
+    for step in done.steps:
+        if isinstance(step, Wait):
+            pause += step.seconds
+        elif isinstance(step, Move):
+            moving = [part for part in next(parts).parts if part.cost]
+            pauses += [pause, *[0.0] * (len(moving) - 1)] if moving else []
+            pause = 0.0 if moving else pause
+    return [*pauses, pause] if pauses else [0.0, pause]
 
 
 def timed_parts(done: TaskResult, options: dict[str, Any]) -> list[tuple[PlanResult, Trajectory]]:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 from PIL import Image
 
+from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
+from evenroad.flight.flight_trajectory import FlightTrajectory
 from evenroad.flight.flight_world import FlightWorld
 from evenroad.planning.result import PlanResult
 from evenroad.viz import style
@@ -25,7 +28,19 @@ _STEPS = 2000
 def draw_flight_plan(result: PlanResult, world: FlightWorld) -> Image.Image:
     """Return a picture of a flight from above, in metres; obstacles are where they are at time 0."""
     flight = None if result.path is None else result.trajectory()
-    shown = np.vstack([result.start, result.goals])[:, :2] if flight is None else flight.positions[:, :2]
+    return _drawn(world, np.vstack([result.start, result.goal]), flight, f"{result.status}: {result.message}")
+
+
+def draw_flight(flight: FlightTrajectory) -> Image.Image:
+    """Return a picture of a trajectory, as that of its plan."""
+    if not isinstance(flight.world, FlightWorld):
+        raise InvalidValue("this trajectory does not know its world, without which it cannot be shown")
+    return _drawn(flight.world, flight.positions[[0, -1]], flight, f"trajectory of {flight.duration:.4g} s")
+
+
+def _drawn(world: FlightWorld, terminals: Floats, flight: FlightTrajectory | None, title: str) -> Image.Image:
+    """Return the picture of a flight, or of its start and goal alone, the two rows of `terminals`."""
+    shown = terminals[:, :2] if flight is None else flight.positions[:, :2]
     low, high = shown.min(axis=0) - _MARGIN, shown.max(axis=0) + _MARGIN
     # A flight that is nearly straight is shown with what is beside it.
     widest = float((high - low).max())
@@ -44,8 +59,7 @@ def draw_flight_plan(result: PlanResult, world: FlightWorld) -> Image.Image:
             view.circle(at[:2], world.radius, _BALL)
         view.line(flight.at(np.linspace(0.0, flight.duration, _STEPS))[:, :2], style.PATH, 3)
         entries = [(f"ball, every {_EVERY:g} s", _BALL, "white"), ("flight", style.PATH, None)]
-    for state, colour in ((result.start, style.START), (result.goal, style.GOAL)):
+    for state, colour in zip(terminals, (style.START, style.GOAL), strict=True):
         view.dot(state[:2], colour, 6)
     entries += [("start", style.START, "white"), ("goal", style.GOAL, "white")]
-    title = f"{result.status}: {result.message}"
     return Sheet.of_view(view, LEAST_WIDTH, title, "from above", ("x [m]", "y [m]"), entries).image

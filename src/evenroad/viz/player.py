@@ -165,7 +165,7 @@ def arm_data(world: ArmWorld, result: PlanResult, file: RobotFile | None) -> Dat
     bodies = [obstacle_data(each) for each in world.scene.obstacles]
     for name, links in shown.sets.items():
         of_colour = [(link, each) for link, part in links.items() for each in by_colour(part)]
-        bodies += [_body_data(part, number[link], name, link) for link, part in of_colour]
+        bodies += [body_data(part, number[link], name, link) for link, part in of_colour]
     parts = [obstacle_part(each) for each in world.scene.obstacles]
     camera, _ = chosen_camera(result, world, shown.sets[COLLISION], parts)
     x, y, _ = camera.eye - camera.look_at
@@ -186,10 +186,10 @@ def arm_data(world: ArmWorld, result: PlanResult, file: RobotFile | None) -> Dat
 def obstacle_data(obstacle: Obstacle) -> Data:
     """Return the body of an obstacle, in its own frame, and its pose."""
     pose = columns_of(obstacle.body.pose)
-    return _body_data(obstacle_part(obstacle.at(IDENTITY)), 0, "scene", obstacle.name) | {"pose": pose}
+    return body_data(obstacle_part(obstacle.at(IDENTITY)), 0, "scene", obstacle.name) | {"pose": pose}
 
 
-def _body_data(part: Part, link: int, kind: str, name: str) -> Data:
+def body_data(part: Part, link: int, kind: str, name: str) -> Data:
     """Return a body that moves with a link: of a set of the robot's bodies, or of the scene."""
     corners, directions, triangles = indexed(part)
     normals = np.zeros((len(corners), 4), dtype=np.int8)

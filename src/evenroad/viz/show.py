@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
 from importlib import import_module
 from types import ModuleType
 from typing import TypeAlias
 
 from PIL import Image
 
-from evenroad._load import load
 from evenroad.collision.arm_world import ArmWorld
 from evenroad.driving.car_world import CarWorld
+from evenroad.driving.polygon_map import PolygonMap
 from evenroad.errors import InvalidValue, shown
+from evenroad.flight.flight_trajectory import FlightTrajectory
+from evenroad.flight.flight_world import FlightWorld
 from evenroad.loading.cache import file_of
-from evenroad.planning.make_result import make_result
 from evenroad.planning.plan import plan as plan_path
-from evenroad.planning.problem import Problem
-from evenroad.planning.result import PlanResult, Status
+from evenroad.planning.result import PlanResult
 from evenroad.points.pointset import PointSet
 from evenroad.robots.robot import Robot
 from evenroad.scenes.scene import Scene
@@ -30,9 +29,9 @@ from evenroad.trajectory.trajectory import Trajectory
 from evenroad.viz.browser import how_to_open, open_browser
 from evenroad.viz.page import ArmPage
 from evenroad.viz.page_server import PageServer
+from evenroad.viz.picture_of import opened, picture_of, plan_shown
 from evenroad.viz.player import page_of
-from evenroad.viz.posture import draw_arm_world, draw_scene
-from evenroad.viz.result import plot_parts
+from evenroad.viz.task_page import page_of_task
 from evenroad.world.gridmap import DiskWorld, GridMap
 
 Shown: TypeAlias = (
@@ -40,10 +39,15 @@ Shown: TypeAlias = (
     | TaskResult
     | Trajectory
     | CarTrajectory
+    | FlightTrajectory
     | Motion
     | GridMap
+    | PolygonMap
     | PointSet
     | ArmWorld
+    | DiskWorld
+    | CarWorld
+    | FlightWorld
     | Robot
     | Scene
     | str
@@ -55,17 +59,17 @@ HEIGHT = 600
 
 
 def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | PageServer | Image.Image:
-    """Show a plan or a trajectory as a page in the browser that plays it: an arm, or a disk or a car on its map.
+    """Show a plan, a trajectory or a task as a page in the browser that plays it: an arm, or a disk or car on its map.
 
     An arm's page plans again as start, goal and obstacles are dragged.  All else is a picture.
 
     A robot, also in its scene, is a picture of it at a configuration, with what touches in red.  The title says what
-    touches, or which two bodies are nearest, and how far.  A task is the pictures of its motions.  In a notebook all
-    appears below the cell.  Elsewhere a page is served until Ctrl-C; where no browser opens, its address is printed.
+    touches, or which two bodies are nearest, and how far.  In a notebook all appears below the cell.  Elsewhere a page
+    is served until Ctrl-C; where no browser opens, its address is printed.
 
     Parameters
     ----------
-    what : PlanResult, Trajectory, TaskResult, Motion, ArmWorld, Robot, Scene, GridMap, PointSet, or a file of one
+    what : PlanResult, Trajectory, TaskResult, Motion, Robot, Scene, GridMap, PointSet, a world, or a file of one
         A plan or a trajectory must know its world, as those of :func:`evenroad.plan` and their files do.
     q : array_like, shape (dim,), mapping or str, optional
         The configuration at which a robot is shown, as `ArmWorld.valid` takes one.  Default: the state ``home``, or
@@ -95,21 +99,13 @@ def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | PageServe
     >>> er.show(er.ArmWorld("ur5", "box-reach"), "inside")  # doctest: +SKIP
     """
     if isinstance(what, str | os.PathLike):
-        what = load(what)  # type: ignore[assignment]
+        what = opened(what)  # type: ignore[assignment]
     if q is not None and not isinstance(what, ArmWorld | Robot):
         raise InvalidValue(f"q says where a robot stands, also in an er.ArmWorld, got q={shown(q)} with something else")
     notebook = _notebook()
-    moving = what if isinstance(what, PlanResult) else _driven(what)
-    if moving is not None and (page := _page(moving, what, port)) is not None:
+    if (page := _page(what, port)) is not None:
         return _served(page, notebook)
-    if moving is not None:
-        picture = moving.plot()
-    else:
-        draw = next((each for kind, each in _pictures(q) if isinstance(what, kind)), None)
-        if draw is None:
-            kinds = "a trajectory, a task, a robot, a scene, an er.ArmWorld, or a file of one"
-            raise InvalidValue(f"a plan or a map can be shown, {kinds}, got {shown(what)}")
-        picture = draw(what)
+    picture = picture_of(what, q)
     if notebook is None:
         picture.show()
     else:
@@ -117,37 +113,13 @@ def show(what: Shown, q: object = None, *, port: int = 0) -> ArmPage | PageServe
     return picture
 
 
-def _driven(what: object) -> PlanResult | None:
-    """Return a trajectory as a plan in its world; None of what is no trajectory."""
-    if not isinstance(what, Trajectory | CarTrajectory):
+def _page(what: object, port: int) -> ArmPage | PageServer | None:
+    """Return the page that plays a plan, a trajectory or a task; None if only a picture shows it."""
+    if isinstance(what, TaskResult) and what.path is not None:
+        played = page_of_task(what)
+        return PageServer("127.0.0.1", port, lambda: played)
+    if (result := plan_shown(what)) is None:
         return None
-    if what.world is None:
-        raise InvalidValue(
-            "this trajectory does not know its world, without which it cannot be shown;"
-            " of a task, show the answer itself"
-        )
-    rows = what.waypoints if isinstance(what, Trajectory) else what.positions
-    problem = Problem(what.world, what.positions[0].copy(), what.positions[-1:].copy())
-    return make_result(
-        problem, Status.SOLVED, f"trajectory of {what.duration:.4g} s", path=rows, goal_index=0, proof=what.proof
-    )
-
-
-def _pictures(q: object) -> list[tuple[type, Callable[..., Image.Image]]]:
-    """Return what draws a value of each type."""
-    return [
-        (ArmWorld, lambda world: draw_arm_world(world, q)),
-        (Robot, lambda robot: draw_arm_world(ArmWorld(robot), q)),
-        (Scene, draw_scene),
-        (GridMap, lambda grid: grid.plot()),
-        (PointSet, lambda points: points.plot()),
-        (TaskResult, lambda done: done.plot()),
-        (Motion, lambda motion: plot_parts(motion.parts)),
-    ]
-
-
-def _page(result: PlanResult, what: object, port: int) -> ArmPage | PageServer | None:
-    """Return the page that plays a plan; None if only a picture shows it."""
     world = result.world
     timed = (what.times, what.positions) if isinstance(what, Trajectory | CarTrajectory) else None
     if isinstance(world, ArmWorld):

@@ -61,18 +61,21 @@ function showArm() {
     const view = camera.view(), poses = posesAt(valueOf), poseOf = (body) => body.pose || poses[body.link];
     // The first way to show the arm is solid; others are seen through, over it.
     const first = data.sets.find((name) => state.shown.has(name));
-    const shown = bodies.filter((body) => body.set === "scene" || body.set === first);
+    const shown = bodies.filter((body) => (["scene", "held", first].includes(body.set)) && isThere(body));
     painter.lightUp(lamp, () => { for (const body of shown) painter.paint(body, poseOf(body)); });
     painter.begin(view, lamp, light, ground, paper);
     painter.paint(floor, identity(), [0, 0, 0, 1], FLOOR);
     for (const body of shown) painter.paint(body, poseOf(body), [...colourOf(body), 1], BODY);
     paintTrails();
-    over(bodies.filter((body) => body.set !== "scene" && body.set !== first && state.shown.has(body.set)), poseOf, () => [0.93, 0.6, 0.12, 0.4]);
+    over(bodies.filter((body) => !["scene", "held", first].includes(body.set) && state.shown.has(body.set)), poseOf, () => [0.93, 0.6, 0.12, 0.4]);
     made.after(over);
     say();
   };
+  function isThere(body) { // a body of a task, which is now here and now held
+    return !body.when || body.when.some(([from, to]) => from <= state.time && state.time < to);
+  }
   function colourOf(body) {
-    if (!isColoured() || body.set === "scene" || state.byHand) return body.colour;
+    if (!isColoured() || ["scene", "held"].includes(body.set) || state.byHand) return body.colour;
     return hueNow().map((each, k) => 0.75 * each + 0.25 * body.colour[k]);
   }
   function paintTrails() { // also where bodies hide them, faintly
