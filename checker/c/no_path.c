@@ -30,21 +30,51 @@ static double moved_by(const Checker* checker, const Cell* cell, size_t frame, V
   return moves + by * (length(cross(at->axis, difference(centre, at->pose.at))) + moves);
 }
 
-/* By how much a witness overlaps in every state of a cell, in whose middle the frames are. */
+/* How half the side of a cell along each column moves the centre of a ball to the first order, how far all do, and how
+   far it strays from there. */
+typedef struct {
+  Vector ways[MOST_COLUMNS];
+  double far, strays;
+} Swept;
+
+/* Add the joint of a frame, which moves the ball or, with a sign of -1, the solid. */
+static void sweep(const Checker* checker, const Cell* cell, size_t frame, double sign, Vector centre, Swept* swept) {
+  const Frame* joint = checker->model->frames + frame;
+  const Moved* at = checker->moved + frame;
+  double by = half_side(checker, cell, frame);
+  Vector way = joint->slides ? at->axis : cross(at->axis, difference(centre, at->pose.at));
+  size_t i = 0;
+  while (checker->axes.columns[i] != joint->column) ++i;
+  if (!joint->slides) swept->strays += by * (by * length(way) / 2 + swept->far);
+  swept->far += by * length(way);
+  swept->ways[i] = sum(swept->ways[i], scaled(joint->multiplier > 0 ? sign * by : -sign * by, way));
+}
+
+/* By how much a witness overlaps in every state of a cell, in whose middle the frames are; refuses what is too little.
+   The distance is convex: it is largest where all columns are at an end. */
 static double overlap(const Checker* checker, const Cell* cell, const Witness* witness) {
   const Model* model = checker->model;
   const Ball *ball = witness->ball, *other = witness->other;
   size_t a = model->bodies[ball->body].frame, b = model->bodies[witness->body].frame, count = 0;
   size_t from = shared(model, a, b);
   Vector centre = placed(&checker->moved[a].pose, ball->centre);
-  double moves = 0;
-  for (size_t k = a; k != from; k = model->frames[k].parent) moves = moved_by(checker, cell, k, centre, moves);
+  Swept swept = {.far = 0};
+  for (size_t k = a; k != from; k = model->frames[k].parent) sweep(checker, cell, k, 1, centre, &swept);
   for (size_t k = b; k != from; k = model->frames[k].parent) checker->chain[count++] = k;
-  while (count) moves = moved_by(checker, cell, checker->chain[--count], centre, moves);
+  while (count) sweep(checker, cell, checker->chain[--count], -1, centre, &swept);
   const Pose* pose = &checker->moved[b].pose;
-  Vector seen = turned_in(pose, difference(centre, pose->at));
-  double apart = other ? length(difference(seen, other->centre)) - other->radius : distance_from(witness->solid, seen);
-  return ball->radius + witness->kept - apart - moves;
+  double least = INFINITY;
+  for (size_t back = 0; back < (size_t)1 << checker->axes.count; ++back) {
+    Vector at = centre;
+    for (size_t i = 0; i < checker->axes.count; ++i) at = sum(at, scaled(back >> i & 1 ? -1 : 1, swept.ways[i]));
+    Vector seen = turned_in(pose, difference(at, pose->at));
+    double apart =
+        other ? length(difference(seen, other->centre)) - other->radius : distance_from(witness->solid, seen);
+    double by = ball->radius + witness->kept - apart - swept.strays;
+    if (!(by > SPARE)) fail(REFUSED, "a cell is not blocked (%.3g m)", by);
+    least = fmin(least, by);
+  }
+  return least;
 }
 
 static void place_middle(const Checker* checker, const Cell* cell) {
@@ -101,9 +131,7 @@ static Cell* open_cells(Checker* checker, const Tree* tree, NoPath* to, size_t* 
       size_t witness = answer - columns - 1;
       if (witness >= certificate->witness_count) fail(REFUSED, "there is no witness %zu", witness);
       place_middle(checker, cell);
-      double by = overlap(checker, cell, checker->witnesses + witness);
-      if (!(by > SPARE)) fail(REFUSED, "a cell is not blocked (%.3g m)", by);
-      to->smallest = fmin(to->smallest, by);
+      to->smallest = fmin(to->smallest, overlap(checker, cell, checker->witnesses + witness));
       ++to->blocked;
     }
   }

@@ -35,7 +35,7 @@ from evenroad_verify.certificate import read_certificate
 from evenroad_verify.claim import Inputs
 from evenroad_verify.errors import BadInput, Refused
 
-from .forgery_cases import Case, cases
+from .forgery_cases import Case, cases, pairs_case
 
 IN_EACH = 40
 """Forgeries about the same changed files."""
@@ -54,7 +54,7 @@ def main() -> None:
         if options.count:
             print_forgeries(made, options.count, options.judged, np.random.default_rng(options.seed))
         if options.flips:
-            print_flips(made, options.flips, np.random.default_rng(options.seed))
+            print_flips([*made, pairs_case(Path(folder))], options.flips, np.random.default_rng(options.seed))
     print(f"{time.process_time() - began:.0f} s of processor time")
 
 

@@ -17,7 +17,10 @@ from tests.robots.oracle import clearance, link_poses
 
 import evenroad as er
 from evenroad.certificates.certify import Sources, certify
+from evenroad.certificates.certify_pairs import certify_pairs
+from evenroad.certificates.link_pairs import Links, untested_pairs
 from evenroad.certificates.no_path import certify_no_path
+from evenroad.certificates.robot_files import ReadRobot
 from evenroad.constraints import KeepInBox, KeepUpright
 from evenroad.constraints.constrained_world import kept_world
 from evenroad_verify.certificate import read_certificate
@@ -126,6 +129,16 @@ def _wall_in_a_shell() -> trimesh.Trimesh:
     flap = np.array([[corner, 1.1 * corner, corner * (1.0, 1.05, 1.0)]] * 2)
     corners = np.concatenate([wall.triangles, shell.triangles, flap]).reshape(-1, 3)
     return trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), process=False)
+
+
+def pairs_case(folder: Path) -> Case:
+    """Return a case of pairs that never touch, whose scene, in which there is nothing, is a file; nobody judges it."""
+    made = _arm(folder / "pairs", "pairs", "obstacles: {}\n")
+    read = ReadRobot(made.sources, ())
+    links, file = Links(read.urdf), folder / "pairs" / "pairs.cert"
+    certify_pairs(read, links, untested_pairs(links, [("base", "fore", "disabled")], 30.0), file)
+    data = file.read_bytes().replace(b"scene -\n", b"")[: -8 - len("obstacles: {}\n")]
+    return Case("pairs", data, replace(made.sources, srdf=None), lambda *_: False)
 
 
 def _no_path(folder: Path, name: str, position_only: bool | None = None) -> Case:

@@ -1,5 +1,6 @@
 """Certificates that there is no path: what they claim is true, and what is changed for the worse is refused."""
 
+import subprocess
 from dataclasses import replace
 
 import numpy as np
@@ -7,9 +8,12 @@ import pytest
 
 import evenroad as er
 from evenroad.certificates import no_path
+from evenroad.certificates.sources import Sources
 from evenroad.errors import NotAvailable
+from evenroad_verify.claim import read_inputs
 from evenroad_verify.command import main
-from evenroad_verify.no_path import verify_no_path
+from evenroad_verify.no_path import read_no_path, verify_no_path
+from tests.certificates.checker_in_c import program
 from tests.certificates.no_path import TIP, Parts, Place, accepts, at, flat_arm, posts
 
 
@@ -256,3 +260,58 @@ def test_a_file_says_what_it_shows(caught):
     assert shown.joints == ("turn",)
     assert shown.least > 1e-9
     assert {first for first, _ in shown.pairs} == {"upper"}
+
+
+REACH = '<collision><origin xyz="0.25 0 0" rpy="0 1.5707963267948966 0"/><geometry>{}</geometry></collision>'
+JOINTS = (("base", "pan", 0.0, "0 0 1", -3.0, 3.0), ("pan", "upper", 0.0, "0 -1 0", -0.5, 3.6),
+          ("upper", "fore", 0.5, "0 -1 0", -2.6, 2.6))  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def fenced(tmp_path_factory):
+    """An arm of two links that turns about z between plates of 5 mm, under a plate that is too low for both upright."""
+    folder, links = tmp_path_factory.mktemp("fenced"), ['<robot name="arm"><link name="base"/>']
+    for parent, child, along, axis, low, high in JOINTS:
+        shape = "" if child == "pan" else REACH.format('<capsule radius="0.04" length="0.42"/>')
+        links.append(
+            f'<link name="{child}">{shape}</link><joint name="{child}" type="revolute"><parent link="{parent}"/>'
+        )
+        links.append(f'<child link="{child}"/><origin xyz="{along} 0 0"/><axis xyz="{axis}"/>')
+        links.append(f'<limit lower="{low}" upper="{high}"/></joint>')
+    (folder / "arm.urdf").write_text("\n".join([*links, "</robot>"]))
+    angles = (0.8, -0.8, 0.8 - np.pi, np.pi - 0.8)
+    plates = [er.Box((1.1, 0.005, 2.4), xyz=(0.65 * np.cos(a), 0.65 * np.sin(a), 0.1), rpy=(0, 0, a)) for a in angles]
+    scene = er.Scene([*plates, er.Box((3, 3, 0.005), xyz=(0, 0, 0.8))])
+    world = er.ArmWorld(er.load_robot(folder / "arm.urdf"), scene)
+    start, goal = np.array([0.0, 0.3, 0.4]), np.array([[1.6, 0.3, 0.4]])
+    assert world.valid(np.vstack([start, goal])).all()
+    sources = Sources(folder / "arm.urdf")
+    no_path.certify_no_path(world, start, goal, sources, folder / "arm.cert")
+    return folder, (folder / "arm.cert").read_bytes()
+
+
+def test_thin_plates_shut_in_three_joints_in_a_short_certificate(fenced):
+    folder, data = fenced
+    read = read_no_path(data)
+    assert [len(columns) for columns, _ in read.parts] == [3]
+    assert len(data) < 30_000
+    words = [str(folder / "arm.cert"), str(folder / "arm.urdf")]
+    assert main(words) == 0
+    assert subprocess.run([program("command"), *words], capture_output=True).returncode == 0
+
+
+@pytest.mark.parametrize("change", ["higher", "apart"])
+def test_a_plate_that_leaves_a_way_is_refused_by_both(change, fenced, tmp_path):
+    folder, data = fenced
+    given = read_inputs(folder / "arm.urdf", None, None, {}, read_no_path(data).terminals)
+    scene = dict(given.carried)["scene.yaml"].decode()
+    old, new = ("0.8]", "1.2]") if change == "higher" else ("1.1, 0.005", "0.1, 0.005")
+    assert old in scene
+    other = scene.replace(old, new, 1).encode()
+    assert len(other) == len(scene)
+    forged = data.replace(scene.encode(), other)
+    inputs = read_inputs(folder / "arm.urdf", None, None, {}, read_no_path(forged).terminals)
+    (tmp_path / "forged.cert").write_bytes(forged.replace(given.digest.encode(), inputs.digest.encode()))
+    words = [str(tmp_path / "forged.cert"), str(folder / "arm.urdf")]
+    assert main(words) == 1
+    assert subprocess.run([program("command"), *words], capture_output=True).returncode == 1

@@ -11,7 +11,7 @@ from evenroad_verify.cells import Ranges
 from evenroad_verify.certificate import Certificate
 from evenroad_verify.claim import Body, read_inputs
 from evenroad_verify.frames import frames_of
-from evenroad_verify.overlaps import Places, Spot, between, is_ball_inside, solid_of
+from evenroad_verify.overlaps import Places, Spot, between, is_ball_inside, overlap, solid_of
 from evenroad_verify.shapes import primitive, surface
 from tests.certificates.no_path import LINK, Parts, Place, accepts, at, flat_arm, posts
 from tests.certificates.small import sources_in
@@ -118,3 +118,30 @@ def test_a_closed_mesh_is_a_solid_and_one_with_a_hole_is_not(tmp_path):
         assert not accepts(Parts.of(data).saying("inputs", inputs.digest).data, inputs)
     with pytest.raises(NotAvailable):
         Place(tmp_path / "open", place.scene, flat_arm(first=mesh)).certificate([0.0, 0.3], [[2.0, 0.3]])
+
+
+@pytest.mark.parametrize("kind", [*SIZES, "ball"])
+def test_what_overlaps_throughout_a_cell_does_so_in_all_of_its_states(kind, tmp_path):
+    """On joints that turn, slide and follow others: an oracle places both, and finds no state with less depth."""
+    sources = sources_in(tmp_path, POST, URDF)
+    terminals = Certificate("", ("A", "B", "C"), np.zeros((1, 3, 3)), np.zeros(0, np.uint8), np.zeros((0, 3)))
+    frames = frames_of(read_inputs(sources.robot, sources.scene, None, {}).robot, terminals)
+    robot, rng, lost = er.load_robot(sources.robot), np.random.default_rng(7), []
+    ranges = Ranges(np.arange(3), np.full(3, -3.0), np.full(3, 3.0), np.zeros(3, bool))
+    links = ("base", "a", "b", "c", "d")
+    for _ in range(60):
+        middle, half = rng.uniform(-1.0, 1.0, (1, 3)), rng.uniform(0.0, 0.4, (1, 3)) * rng.choice([0.1, 1.0], (1, 3))
+        first, second = rng.choice(5, 2, replace=False).tolist()
+        places, ball = Places(frames, ranges, middle, half, 3), Spot(first, rng.uniform(-0.3, 0.3, 3), 0.1)
+        own = Spot(second, rng.uniform(-0.3, 0.3, 3), 0.2)
+        solid = own if kind == "ball" else solid_of(primitive(kind, SIZES[kind]))
+        said = overlap(places, frames, ball, (second, solid), np.zeros(1, np.int64))[0]
+        corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
+        q = middle + half * np.concatenate([np.zeros((1, 3)), corners, rng.uniform(-1.0, 1.0, (150, 3))])
+        poses = link_poses(robot, q)
+        (turn, origin), (other, base) = poses[links[first]], poses[links[second]]
+        local = np.einsum("nji,nj->ni", other, origin + turn @ ball.point - base)
+        far = np.linalg.norm(local - own.point, axis=1) - 0.2 if kind == "ball" else solid.distances(local)
+        assert said <= 0.1 - far.max() + 1e-12
+        lost.append(0.1 - far.max() - said)
+    assert min(lost) < 1e-3

@@ -25,6 +25,8 @@ from evenroad_verify.poses import PoseGoal, are_beyond, read_poses
 
 MAGIC = b"evenroad certificate of no path 1\n"
 _AT_ONCE = 1 << 14
+_MOST = 8
+"""Columns of cells: these have 2^8 corners."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ def _no_path(said: dict[str, list[str]], body: memoryview) -> NoPath:
     parts = [[count_of(word) for word in line.split(" ")] for line in said.get("cells", [])]
     sizes = [8 * (1 + goals) * dim, 18 * balls, 4 * witnesses]
     for count, *columns in parts:
-        demand(columns and len(set(columns)) == len(columns), "cells are of no joint, or of one twice")
+        demand(0 < len(columns) == len(set(columns)) <= _MOST, "cells are of no joint, of one twice, or of too many")
         demand(max(columns) < dim, "cells are of a joint that is not named")
         sizes.append(count * _bytes(len(columns), witnesses))
     poses = read_poses(said)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,17 +127,42 @@ class Places:
             far = far + half * lever
         return np.asarray(far)
 
+    def swept(self, points: Floats, spot: Spot, chain: list[int], rows: Ints) -> tuple[list[Floats], Floats]:
+        """Return how half a side of each column moves points of a spot, to the first order, and how far they stray.
+
+        A point that has moved by `far` is turned about an axis by a vector that is longer by as much, at most.
+        """
+        ways, far, stray = dict[int, Floats](), np.zeros(len(rows)), np.zeros(len(rows))
+        for k in chain:
+            column, factor = int(self._frames.column[k]), float(self._frames.factor[k])
+            by, way = self._half[rows, column] * abs(factor), self._axes[rows, k]
+            if not self._frames.slides[k]:
+                way = np.cross(way, points - self.origin[rows, k + 1])
+                stray = stray + by * (0.5 * by * np.linalg.norm(way, axis=1) + far)
+            far = far + by * np.linalg.norm(way, axis=1)
+            forward = self._frames.carries[spot.frame, k] == (factor > 0.0)
+            ways[column] = ways.get(column, 0.0) + (by if forward else -by)[:, None] * way
+        return list(ways.values()), stray
+
 
 def overlap(places: Places, frames: Frames, ball: Spot, other: tuple[int, Solid | Spot], rows: Ints) -> Floats:
-    """Return by how much a ball goes into a solid, or into another ball, throughout cells, (n,) [m]."""
+    """Return by how much a ball goes into a solid, or into another ball, throughout cells, (n,) [m].
+
+    The distance is convex: it is largest where all columns are at an end.
+    """
     frame, solid = other
-    points = places.of(ball, rows)
-    if isinstance(solid, Spot):
-        far = np.linalg.norm(points - places.of(solid, rows), axis=1) - solid.radius
-    else:
-        local = np.einsum("nji,nj->ni", places.rotation[rows, frame], points - places.origin[rows, frame])
-        far = solid.distances(local)
-    return np.asarray(ball.radius - far - places.moved(points, between(frames, ball.frame, frame), rows))
+    middles = places.of(ball, rows)
+    ways, stray = places.swept(middles, ball, between(frames, ball.frame, frame), rows)
+    most = np.full(len(rows), -np.inf)
+    for signs in itertools.product((1.0, -1.0), repeat=len(ways)):
+        points = middles + sum(sign * way for sign, way in zip(signs, ways, strict=True))
+        if isinstance(solid, Spot):
+            far = np.linalg.norm(points - places.of(solid, rows), axis=1) - solid.radius
+        else:
+            local = np.einsum("nji,nj->ni", places.rotation[rows, frame], points - places.origin[rows, frame])
+            far = solid.distances(local)
+        most = np.maximum(most, far)
+    return np.asarray(ball.radius - most - stray)
 
 
 def require_blocked(

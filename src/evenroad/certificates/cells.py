@@ -1,11 +1,10 @@
 """Trees of cells that are halved where a path may lead through them, until start and goals are apart.
 
-All cells of one depth are halved along the same joint, so the cells of a depth are alike.
+Each cell is halved along the joint that costs the deepest overlap in it most.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,7 +12,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._time_limit import look_at_clock, require_time_for
 from evenroad.certificates.targets import BEYOND, WITHIN, Target, status_of
-from evenroad.certificates.witnesses import SPARE, Witnesses, depths, frames_at
+from evenroad.certificates.witnesses import SPARE, Witnesses, depths, frames_at, losses
 
 BITS = 24
 """A range is 2^BITS units long; no cell has a shorter side than one."""
@@ -45,127 +44,76 @@ class Ranges:
 
 @dataclass
 class Tree:
-    """Cells: depth, lower corner in units, number of the first of two halves or -1, and the pair that blocks it or -1.
+    """Cells: depth, lower corner, sides in units, number of the first of two halves or -1, pair that blocks it or -1.
 
-    `shifts`, (depths + 1, columns), says how often the cells of a depth are halved along each column.  `rows` are pairs
-    that may block a cell that is not halved; `valid` are pairs that block one.  `status`, (cells, targets), says if
-    targets are beyond a cell.
+    `along` is the column along which a cell is best halved.  `rows` are pairs that may block a cell that is not halved;
+    `valid` are pairs that block one.  `beside`, (2, p), are cells that are not halved and have a face in common.
+    `status`, (cells, targets), says if targets are beyond a cell.
     """
 
     ranges: Ranges
-    shifts: Ints
     depth: Ints
     low: Ints
+    side: Ints
+    along: Ints
     child: Ints
     pair: Ints
     clear: Bools
     rows: tuple[Ints, Ints]
+    beside: Ints
     targets: tuple[Target, ...]
     status: Ints
     valid: list[tuple[Ints, Ints]] = field(default_factory=list)
-
-    def side(self, depth: Ints) -> Ints:
-        """Return the sides of cells of some depths, in units."""
-        return np.asarray(2**BITS >> self.shifts[depth], dtype=np.int64)
 
     def leaves(self) -> Ints:
         """Return the cells that are neither halved nor blocked."""
         return np.flatnonzero((self.child < 0) & (self.pair < 0))
 
-    def keys(self, depth: int, positions: Ints) -> Ints:
-        """Return one number for each place, (n, columns), by the cell of a depth that it is in."""
-        key = np.zeros(len(positions), dtype=np.int64)
-        for k, shift in enumerate(self.shifts[depth].tolist()):
-            key = (key << shift) | (positions[:, k] >> (BITS - shift))
-        return key
-
     def find(self, positions: Ints, among: Ints) -> Ints:
         """Return which of some cells hold positions, (n, columns), or -1."""
-        found = np.full(len(positions), -1, dtype=np.int64)
-        for depth in np.unique(self.depth[among]).tolist():
-            here = among[self.depth[among] == depth]
-            keys = self.keys(depth, self.low[here])
-            order = np.argsort(keys)
-            wanted = self.keys(depth, positions)
-            index = np.minimum(np.searchsorted(keys[order], wanted), len(here) - 1)
-            same = keys[order][index] == wanted
-            found[same] = here[order[index[same]]]
-        return found
+        low, high = self.low[among], self.low[among] + self.side[among]
+        inside = [((low <= position) & (position < high)).all(axis=1) for position in positions]
+        return np.array([among[each.argmax()] if each.any() else -1 for each in inside], dtype=np.int64)
 
-    def neighbours(self, cells: Ints, among: Ints) -> Iterator[tuple[Ints, Ints]]:
-        """Yield pairs of some cells and others that share a face with them and are no smaller."""
-        by_depth = {depth: among[self.depth[among] == depth] for depth in np.unique(self.depth[among]).tolist()}
-        tables = {}
-        for depth, here in by_depth.items():
-            keys = self.keys(depth, self.low[here])
-            order = np.argsort(keys)
-            tables[depth] = keys[order], here[order]
-        for depth in np.unique(self.depth[cells]).tolist():
-            mine = cells[self.depth[cells] == depth]
-            side = self.side(np.array(depth))
-            for k in range(len(side)):
-                for step in (int(side[k]), -1):
-                    beside = self.low[mine].copy()
-                    beside[:, k] += step
-                    if self.ranges.endless[k]:
-                        beside[:, k] %= 2**BITS
-                    inside = (beside[:, k] >= 0) & (beside[:, k] < 2**BITS)
-                    for other in [each for each in tables if each <= depth]:
-                        keys, here = tables[other]
-                        wanted = self.keys(other, beside)
-                        index = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-                        same = inside & (keys[index] == wanted)
-                        yield mine[same], here[index[same]]
+    def meet(self, both: Ints) -> Bools:
+        """Return which pairs of cells, (2, p), have a face in common."""
+        one, two = both
+        spans = [np.stack([self.low[each], self.low[each] + self.side[each]]) for each in (one, two)]
+        overlap = np.minimum(spans[0][1], spans[1][1]) > np.maximum(spans[0][0], spans[1][0])
+        off = (spans[0][1] - spans[1][0]) * (spans[1][1] - spans[0][0]) == 0
+        turn = np.abs(spans[0] - spans[1][::-1]) == 2**BITS
+        off |= self.ranges.endless & turn.any(axis=0)
+        others = overlap.sum(axis=1, keepdims=True) - overlap
+        return np.asarray((off & (others == overlap.shape[1] - 1)).any(axis=1))
 
 
 def tree_of(witnesses: Witnesses, ranges: Ranges, pairs: Ints, targets: tuple[Target, ...]) -> Tree:
     """Return a tree of one cell, which some pairs may block."""
-    dim = len(witnesses.robot.group)
-    middle = np.zeros((1, dim))
-    middle[0, ranges.columns] = 0.5 * (ranges.low + ranges.high)
-    cell, lengths = np.zeros(len(pairs), dtype=np.int64), []
-    for column, low, high in zip(ranges.columns, ranges.low, ranges.high, strict=True):
-        half = np.zeros((1, dim))
-        half[0, column] = 0.5 * (high - low)
-        lengths.append(float(depths(witnesses, frames_at(witnesses, middle), half, cell, pairs)[1].max()) + 1e-3)
-    shifts = [np.zeros(len(lengths), dtype=np.int64)]
-    left = np.array(lengths)
-    while shifts[-1].max() < BITS - 1 and shifts[-1].sum() < 60:
-        # Halved is the side along which half a cell moves bodies farthest.
-        k = int(left.argmax())
-        left[k] *= 0.5
-        shifts.append(shifts[-1] + (np.arange(len(left)) == k))
-    none = np.full(1, -1, dtype=np.int64)
-    return Tree(
-        ranges,
-        np.array(shifts),
-        np.zeros(1, dtype=np.int64),
-        np.zeros((1, len(left)), dtype=np.int64),
-        none,
-        none.copy(),
-        np.zeros(1, dtype=np.bool_),
-        (cell, pairs),
-        targets,
-        np.zeros((1, len(targets)), dtype=np.int64),
-    )
+    zero, none, axes = np.zeros(1, dtype=np.int64), np.full(1, -1, dtype=np.int64), len(ranges.columns)
+    low, side, cell = np.zeros((1, axes), np.int64), np.full((1, axes), 2**BITS), np.zeros(len(pairs), np.int64)
+    status, nowhere = np.zeros((1, len(targets)), np.int64), np.zeros((2, 0), np.int64)
+    clear = np.zeros(1, dtype=np.bool_)
+    return Tree(ranges, zero, low, side, zero, none, none.copy(), clear, (cell, pairs), nowhere, targets, status)
 
 
 def decide(tree: Tree, witnesses: Witnesses, cells: Ints) -> None:
     """Look which of some new cells are blocked and which are clear, and keep the pairs that may block the others."""
+    if not len(cells):
+        return
     ranges, (row, pair) = tree.ranges, tree.rows
     position = np.full(len(tree.depth), -1, dtype=np.int64)
     position[cells] = np.arange(len(cells))
     new = position[row] >= 0
-    side = tree.side(tree.depth[cells]) * ((ranges.high - ranges.low) / 2.0**BITS)
+    unit = (ranges.high - ranges.low) / 2.0**BITS
     q, half = (np.zeros((len(cells), len(witnesses.robot.group))) for _ in range(2))
-    q[:, ranges.columns] = ranges.low + tree.low[cells] * ((ranges.high - ranges.low) / 2.0**BITS) + 0.5 * side
-    half[:, ranges.columns] = 0.5 * side
+    q[:, ranges.columns] = ranges.low + (tree.low[cells] + 0.5 * tree.side[cells]) * unit
+    half[:, ranges.columns] = 0.5 * tree.side[cells] * unit
     cell, tried = position[row[new]], pair[new]
     frames = frames_at(witnesses, q)
     for i, target in enumerate(tree.targets):
         tree.status[cells, i] = status_of(target, witnesses.tree, frames, half)
-    deep, moved = depths(witnesses, frames, half, cell, tried)
-    shut = deep - moved > SPARE
+    deep, least, moved = depths(witnesses, frames, half, cell, tried)
+    shut = least > SPARE
     tree.valid.append((cells[cell[shut]], tried[shut]))
     tree.pair[cells[cell[shut]]] = tried[shut]
     maybe = (deep + moved > SPARE) & (tree.pair[cells[cell]] < 0)
@@ -177,6 +125,11 @@ def decide(tree: Tree, witnesses: Witnesses, cells: Ints) -> None:
     order = np.lexsort((-deep, cell))
     cell, tried = cell[order], tried[order]
     rank = np.arange(len(cell)) - np.searchsorted(cell, cell)
+    first = rank == 0
+    tree.along[cells] = tree.side[cells].argmax(axis=1)
+    lost = losses(witnesses, frames, half, cell[first], tried[first])
+    lost[tree.side[cells[cell[first]]] < 2] = -np.inf
+    tree.along[cells[cell[first]]] = lost.argmax(axis=1)
     most = np.maximum(LEAST_TRIED, len(witnesses.pairs.ball) >> (tree.depth[cells[cell]] // 2))
     kept = rank < most
     tree.rows = np.concatenate([row[~new], cells[cell[kept]]]), np.concatenate([pair[~new], tried[kept]])
@@ -185,10 +138,10 @@ def decide(tree: Tree, witnesses: Witnesses, cells: Ints) -> None:
 def halve(tree: Tree, cells: Ints) -> Ints:
     """Halve some cells; return the halves, each of which takes over the pairs that may block its cell."""
     first, count = len(tree.depth), len(cells)
-    depth = np.repeat(tree.depth[cells] + 1, 2)
-    low = np.repeat(tree.low[cells], 2, axis=0)
-    grown = tree.shifts[depth] - tree.shifts[depth - 1]
-    low[1::2] += (grown * tree.side(depth))[1::2]
+    low, side = np.repeat(tree.low[cells], 2, axis=0), np.repeat(tree.side[cells], 2, axis=0)
+    rows, along = np.arange(2 * count), np.repeat(tree.along[cells], 2)
+    side[rows, along] //= 2
+    low[rows[1::2], along[1::2]] += side[rows[1::2], along[1::2]]
     tree.child[cells] = first + 2 * np.arange(count)
     row, pair = tree.rows
     at = tree.child[row]
@@ -198,10 +151,21 @@ def halve(tree: Tree, cells: Ints) -> Ints:
         np.concatenate([pair[~mine], pair[mine], pair[mine]]),
     )
     none = np.full(2 * count, -1, dtype=np.int64)
-    tree.depth, tree.low = np.concatenate([tree.depth, depth]), np.concatenate([tree.low, low])
+    tree.depth = np.concatenate([tree.depth, np.repeat(tree.depth[cells] + 1, 2)])
+    tree.low, tree.side = np.concatenate([tree.low, low]), np.concatenate([tree.side, side])
+    tree.along = np.concatenate([tree.along, none])
     tree.child, tree.pair = np.concatenate([tree.child, none]), np.concatenate([tree.pair, none])
     tree.clear = np.concatenate([tree.clear, np.zeros(2 * count, dtype=np.bool_)])
     tree.status = np.concatenate([tree.status, np.zeros((2 * count, len(tree.targets)), dtype=np.int64)])
+    beside = tree.beside
+    for end in (0, 1):
+        # The halves of a cell take its place in each pair.
+        at = tree.child[beside[end]]
+        grown = np.repeat(beside[:, at >= 0], 2, axis=1)
+        grown[end] = np.repeat(at[at >= 0], 2) + np.tile([0, 1], int((at >= 0).sum()))
+        beside = np.concatenate([beside[:, at < 0], grown[:, tree.meet(grown)]], axis=1)
+    halves = tree.child[cells] + np.array([[0], [1]])
+    tree.beside = np.concatenate([beside, halves], axis=1)
     return np.arange(first, first + 2 * count)
 
 
@@ -223,7 +187,8 @@ def separate(tree: Tree, witnesses: Witnesses, start: Floats, goals: Floats, mos
         at = tree.find(terminals, leaves)
         if at[0] < 0:
             return np.zeros(len(goals) + len(tree.targets), dtype=np.bool_)
-        pairs = number[np.concatenate([np.stack(each) for each in tree.neighbours(leaves, leaves)], axis=1)]
+        pairs = number[tree.beside]
+        pairs = pairs[:, (pairs >= 0).all(axis=0)]
         counts = np.where(tree.clear[leaves], CLEAR, 1.0)
         away = _costs(pairs, counts, np.where(leaves == at[0], counts, np.inf))
         entries = _entries(tree, leaves, at[1:])
@@ -236,7 +201,7 @@ def separate(tree: Tree, witnesses: Witnesses, start: Floats, goals: Floats, mos
         status = tree.status[leaves][:, open_goals[open_goals >= len(goals)] - len(goals)]
         mixed = ~tree.clear[leaves] | (status != BEYOND).any(axis=1)
         through = away + left - counts
-        split = mixed & (through <= MORE * through.min() + 1.0) & (tree.depth[leaves] + 1 < len(tree.shifts))
+        split = mixed & (through <= MORE * through.min() + 1.0) & (tree.side[leaves].max(axis=1) > 1)
         if not split.any() or len(tree.depth) + 2 * int(split.sum()) > most:
             return apart
         decide(tree, witnesses, halve(tree, leaves[split]))

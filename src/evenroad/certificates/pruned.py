@@ -19,7 +19,7 @@ def pruned(tree: Tree, start: Floats, goals: Floats, targets: Ints) -> Ints:
     """Return the answers of a tree that keeps a start, (dim,), apart from goals, (g, dim), and from some targets."""
     terminals = tree.ranges.units(np.vstack([start, goals]))
     leaves = tree.leaves()
-    label = _components(tree, leaves)
+    label = _components(tree)
     at = tree.find(terminals, leaves)
     sides = [{int(label[at[0]])}, {int(label[each]) for each in at[1:] if each >= 0}]
     # A larger cell may have a posture that its halves have not.
@@ -32,24 +32,22 @@ def pruned(tree: Tree, start: Floats, goals: Floats, targets: Ints) -> Ints:
     return min(found, key=len)
 
 
-def _components(tree: Tree, leaves: Ints) -> Ints:
+def _components(tree: Tree) -> Ints:
     """Return a number for each cell, the same for open ones that are joined."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    one, two = (np.concatenate(each) for each in zip(*tree.neighbours(leaves, leaves), strict=True))
+    one, two = tree.beside[:, (tree.pair[tree.beside] < 0).all(axis=0)]
     graph = coo_matrix((np.ones(len(one)), (one, two)), shape=(len(tree.depth),) * 2)
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
 def _answers(tree: Tree, leaves: Ints, inside: Bools, whole: Bools) -> Ints:
     """Return the answers that keep the cells of one side of a wall, of which those may be joined that are `whole`."""
-    shut = np.flatnonzero(tree.pair >= 0)
     of = np.full(len(tree.depth), OTHER)
     of[leaves[inside]] = INSIDE
-    within = leaves[inside]
-    for _, beside in (*tree.neighbours(within, shut), *(both[::-1] for both in tree.neighbours(shut, within))):
-        of[beside] = WALL
+    for one, two in (tree.beside, tree.beside[::-1]):
+        of[two[(of[one] == INSIDE) & (tree.pair[two] >= 0)]] = WALL
     pair = _few(tree, np.flatnonzero(of == WALL))
     halved = np.flatnonzero(tree.child >= 0)
     kept = np.zeros(len(of), dtype=np.bool_)
@@ -62,10 +60,9 @@ def _answers(tree: Tree, leaves: Ints, inside: Bools, whole: Bools) -> Ints:
         of[here] = np.where(joined, first, WALL)
         kept[here] = ~joined
     answers, cells = [], np.zeros(1, dtype=np.int64)
-    along = np.diff(tree.shifts, axis=0, append=tree.shifts[-1:]).argmax(axis=1)
     while len(cells):
         shut_here = np.where(of[cells] == WALL, pair[cells], LEFT_OPEN)
-        answers.append(np.where(kept[cells], HALVED - along[tree.depth[cells]], shut_here))
+        answers.append(np.where(kept[cells], HALVED - tree.along[cells], shut_here))
         inner = cells[kept[cells]]
         cells = np.stack([tree.child[inner], tree.child[inner] + 1], axis=1).ravel()
     return np.concatenate(answers)

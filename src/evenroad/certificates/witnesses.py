@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -243,34 +245,94 @@ def frames_at(witnesses: Witnesses, q: Floats) -> Floats:
     return np.stack([poses[:, 0], *(poses[:, child] for child in children)], axis=1)
 
 
-def depths(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair: Ints) -> tuple[Floats, Floats]:
-    """Return by how much pairs overlap in the middles of cells, and how far half a cell moves them [m].
+class Depths(NamedTuple):
+    """By how much pairs overlap in the middles of cells, and throughout; how far half a cell moves them [m]."""
 
-    `frames`, (n, f, 4, 4), are those in middles and `half`, (n, dim), half sides; `cell` and `pair` say which pairs in
-    which cells.
+    middle: Floats
+    least: Floats
+    moved: Floats
+
+
+def depths(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair: Ints) -> Depths:
+    """Return the depths of pairs in cells: `cell` and `pair` say which.
+
+    `frames`, (n, f, 4, 4), are those in the middles of cells and `half`, (n, dim), half sides.
     """
-    deep, moved = np.empty(len(cell)), np.empty(len(cell))
-    for begin in range(0, len(cell), _AT_ONCE):
-        some = slice(begin, begin + _AT_ONCE)
-        deep[some], moved[some] = _depths(witnesses, frames, half, cell[some], pair[some])
-    return deep, moved
+    found = [
+        _depths(witnesses, frames, half, cell[begin : begin + _AT_ONCE], pair[begin : begin + _AT_ONCE])
+        for begin in range(0, max(len(cell), 1), _AT_ONCE)
+    ]
+    return Depths(*(np.concatenate(each) for each in zip(*found, strict=True)))
 
 
-def _depths(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair: Ints) -> tuple[Floats, Floats]:
+def _depths(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair: Ints) -> Depths:
+    at = _movements(witnesses, frames, half, cell, pair)
+    solids, solid = witnesses.solids, witnesses.pairs.solid[pair]
+    middle = at.wide - solids.distances(solid, at.local)
+    # Where even the middle is not deep enough, no corner is looked at.
+    rows = np.flatnonzero(middle > at.stray)
+    least, most = np.full(len(cell), -np.inf), np.full(len(rows), -np.inf)
+    for signs in itertools.product((1.0, -1.0), repeat=len(at.motions)):
+        corner = at.local[rows] + np.einsum("k,kni->ni", np.array(signs), at.motions[:, rows])
+        most = np.maximum(most, solids.distances(solid[rows], corner))
+    least[rows] = at.wide[rows] - most - at.stray[rows]
+    return Depths(middle, least, at.moved)
+
+
+def losses(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair: Ints) -> Floats:
+    """Return about how much depth of pairs is lost in cells by the sides of each column, (n, columns) [m]."""
+    at = _movements(witnesses, frames, half, cell, pair)
+    solids, solid = witnesses.solids, witnesses.pairs.solid[pair]
+    middle = solids.distances(solid, at.local)
+    both_sides = [
+        [solids.distances(solid, at.local + sign * motion) - middle for sign in (-1.0, 1.0)] for motion in at.motions
+    ]
+    lost: Floats = np.array(both_sides).max(axis=1).T + at.strays.T
+    return lost
+
+
+class _Movement(NamedTuple):
+    """Where balls are from solids in the middles of cells, (n, 3), and how half a cell moves them, (columns, n, 3) [m].
+
+    They stray from this by `stray` at most, of which each column has a share, and move by `moved` in all.
+    """
+
+    wide: Floats
+    local: Floats
+    motions: Floats
+    stray: Floats
+    strays: Floats
+    moved: Floats
+
+
+def _movements(witnesses: Witnesses, frames: Floats, half: Floats, cell: Ints, pair: Ints) -> _Movement:
     pairs, solids, tree = witnesses.pairs, witnesses.solids, witnesses.tree
     ball, solid = pairs.ball[pair], pairs.solid[pair]
     at = frames[cell, solids.frame[ball]]
     points = np.einsum("nij,nj->ni", at[:, :3, :3], solids.middle[ball]) + at[:, :3, 3]
     other = frames[cell, solids.frame[solid]]
     local = np.einsum("nji,nj->ni", other[:, :3, :3], points - other[:, :3, 3])
-    deep = solids.radius[ball] + pairs.keep[pair] - solids.distances(solid, local)
-    far = np.zeros(len(cell))
+    columns = np.flatnonzero(half.any(axis=0))
+    far, motions = np.zeros(len(cell)), np.zeros((len(columns), len(cell), 3))
+    strays = np.zeros((len(columns), len(cell)))
     joints = range(len(tree.moved))
-    for moves, order in ((pairs.up, joints[::-1]), (pairs.down, joints)):
+    for moves, order, sign in ((pairs.up, joints[::-1], 1.0), (pairs.down, joints, -1.0)):
         for k in order:
+            _, joint, _, column, factor, _ = tree.moved[k]
             rows = np.flatnonzero(moves[pair, k])
-            if not len(rows):
+            if column not in columns or not len(rows):
                 continue
-            column, own = tree.moved[k][3], cell[rows]
-            far[rows] += tree.moves_by(k, frames[own, k + 1], half[own, column], points[rows], far[rows])
-    return deep, far
+            number, by = int(np.searchsorted(columns, column)), half[cell[rows], column] * factor
+            posed = frames[cell[rows], k + 1]
+            motion = posed[:, :3, :3] @ np.array(joint.axis)
+            if joint.kind == "prismatic":
+                far[rows] += np.abs(by)
+            else:
+                motion = np.cross(motion, points[rows] - posed[:, :3, 3])
+                long = np.abs(by) * np.linalg.norm(motion, axis=1)
+                strays[number, rows] += np.abs(by) * (0.5 * long + far[rows])
+                far[rows] += long
+            motions[number, rows] += sign * by[:, np.newaxis] * motion
+    stray = strays.sum(axis=0)
+    motions = np.einsum("nji,knj->kni", other[:, :3, :3], motions)
+    return _Movement(solids.radius[ball] + pairs.keep[pair], local, motions, stray, strays, far + stray)
