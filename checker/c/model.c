@@ -132,7 +132,8 @@ static void follow(const Frame* frame, double range[2]) {
   range[1] = high;
 }
 
-/* Find how far each joint may go, by its limits, by those of joints that follow it, and by those of the scene. */
+/* Find how far each joint may go, by its limits, by those of joints that follow it, and by those of the scene; and how
+   many frames' joints a column moves at most. */
 static void find_ranges(Model* model) {
   const Inputs* inputs = model->inputs;
   const Certificate* certificate = model->certificate;
@@ -143,8 +144,11 @@ static void find_ranges(Model* model) {
     bool limited = joint->limited && joint->upper - joint->lower <= NO_RANGE;
     range[0] = limited ? joint->lower : -INFINITY;
     range[1] = limited ? joint->upper : INFINITY;
+    size_t moved = 0;
     for (size_t i = 1; i < model->frame_count; ++i) {
-      if (model->frames[i].column == column && model->frames[i].joint != joint) follow(model->frames + i, range);
+      if (model->frames[i].column != column) continue;
+      if (model->frames[i].joint != joint) follow(model->frames + i, range);
+      if (++moved > model->most_moved) model->most_moved = moved;
     }
     range[0] -= LIMIT_TOLERANCE;
     range[1] += LIMIT_TOLERANCE;

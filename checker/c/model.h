@@ -59,6 +59,7 @@ typedef struct {
   const Place* of_link; /* for each link */
   size_t* group;        /* of each body, the first body of its node against obstacles */
   size_t frame_count, pair_count;
+  size_t most_moved;            /* the largest number of joints that one column moves */
   size_t body_count, all_count; /* all: with the obstacles, which are bodies of frame 0 behind those of the robot */
 } Model;
 

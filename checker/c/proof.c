@@ -18,7 +18,7 @@ typedef struct {
 /* How one node moves as long as the other's frame stands still. */
 typedef struct {
   Vector turn, slide; /* W and V of the page */
-  double strays, off; /* bounds of the acceleration, and of what the tolerance moves */
+  double strays, off; /* bounds of the acceleration, and of the square of what the tolerance moves */
 } Motion;
 
 /* The tasks, which are as many as the answers, and how far they are answered. */
@@ -99,7 +99,7 @@ static Motion motion_of(const Model* model, const Moved* moved, size_t frame, si
       motion.slide = sum(motion.slide, scaled(at->rate, cross(at->pose.at, at->axis)));
     }
     motion.strays += far * (at->fastest * (2 * above + turns) + fabs(at->change));
-    motion.off += far * fabs(joint->multiplier) * model->certificate->tolerance;
+    motion.off += pow(far * joint->multiplier * model->certificate->tolerance, 2) * (double)model->most_moved;
     lever += joint->length;
   }
   return motion;
@@ -131,7 +131,7 @@ static double gap_along(const Proof* proof, const Task* task, Vector normal, boo
   double high[2], low[2];
   find_farthest(task->first, moved, &first, normal, half, by_box, high);
   find_farthest(task->second, moved, &second, scaled(-1, normal), half, by_box, low);
-  double lost = half * half / 2 * (first.strays + second.strays) + first.off + second.off;
+  double lost = half * half / 2 * (first.strays + second.strays) + sqrt(first.off + second.off);
   return fmin(-low[0] - high[0], -low[1] - high[1]) - lost - model->pairs[task->number].margin;
 }
 
@@ -164,7 +164,7 @@ static double excess(const Proof* proof, const Kept* kept) {
   if (!kept->is_axis) moves = sum(moves, motion.slide);
   double worst = 0;
   for (int i = -1; i <= 1; i += 2) worst = fmax(worst, distance(kept, sum(at, scaled(i * half, moves))));
-  return worst + half * half / 2 * motion.strays + motion.off - kept->limit;
+  return worst + half * half / 2 * motion.strays + sqrt(motion.off) - kept->limit;
 }
 
 static Node* half_or_refuse(Node* node, bool second) {

@@ -175,7 +175,9 @@ void print_proved(const Proved* proved, bool timed) {
   }
   printf("  smallest gap of a step of the proof: %.3g m\n", proved->smallest);
   for (size_t i = 0; i < certificate->kept_count; ++i) print_kept(certificate->kept + i);
-  if (certificate->tolerance > 0) printf("  every joint may be %g off the curves\n", certificate->tolerance);
+  if (certificate->tolerance > 0) {
+    printf("  joints may be %g off the curves, by the root of the sum of squares\n", certificate->tolerance);
+  }
   print_pairs(proved);
   if (certificate->limit_count && !timed) {
     printf("  limits of velocity and acceleration: the table that has the times is not given\n");

@@ -182,7 +182,7 @@ def _lines(proved: Proved) -> list[str]:
         within = f"{kept.within:g} rad of {_row(kept.low)}" if kept.is_axis else f"{kept.within:g} m of {box}"
         lines.append(f"  the {'axis' if kept.is_axis else 'point'} {_row(kept.part)} of {kept.link} is within {within}")
     if read.tolerance:
-        lines.append(f"  every joint may be {read.tolerance:g} off the curves")
+        lines.append(f"  joints may be {read.tolerance:g} off the curves, by the root of the sum of squares")
     return lines + _lines_of_claim(proved)
 
 

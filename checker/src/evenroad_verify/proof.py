@@ -97,7 +97,8 @@ class Motions:
     def __init__(self, claim: Claim, certificate: Certificate) -> None:
         self._frames, self._nodes, self._curves = claim.frames, claim.nodes, certificate.curves
         self._far, _ = claim.frames.far(certificate.curves, certificate.tolerance)
-        self._off = certificate.tolerance * np.abs(claim.frames.factor)
+        most = float(np.bincount(claim.frames.column).max())
+        self._off = certificate.tolerance**2 * most * claim.frames.factor**2
         self._slides, self._carries = claim.frames.slides, claim.frames.carries
 
     def gaps(self, tasks: Ints, answers: Ints, given: Floats) -> Floats:
@@ -114,10 +115,10 @@ class Motions:
         length = np.linalg.norm(direction, axis=1)
         demand((length > 1e-6).all(), "a direction has no length")
         direction = direction / length[:, None]
-        ends, stray, by_corners = np.zeros((2, len(tasks))), np.zeros(len(tasks)), np.flatnonzero(answers == CORNERS)
+        ends, lost, by_corners = np.zeros((2, len(tasks))), np.zeros((2, len(tasks))), np.flatnonzero(answers == CORNERS)
         for s, sign in enumerate((1.0, -1.0)):
             moves = self._carries[frame[:, s]] & ~self._carries[frame[:, 1 - s]]
-            stray += self._stray(half, moves, rate, bend, self._far[frame[:, s]] + reach[:, s, None])
+            lost += self._lost(half, moves, rate, bend, self._far[frame[:, s]] + reach[:, s, None])
             spin, shift = (np.einsum("nk,nkc->nc", moves, each[at]) for each in (turning, along))
             for e, time in enumerate((half, -half)):
                 f = sign * (direction + time[:, None] * np.cross(direction, spin))
@@ -127,7 +128,7 @@ class Motions:
                 self._reach_by_corners(tasks[:, FIRST + s], by_corners, local, far)
                 ends[e] += far + np.einsum("nc,nc->n", f, origins[:, s])
                 ends[e] += sign * time * np.einsum("nc,nc->n", direction, shift)
-        return np.asarray(-ends.max(0) - stray)
+        return np.asarray(-ends.max(0) - lost[0] - np.sqrt(lost[1]))
 
     def excess(self, tasks: Ints, kept: Kept) -> Floats:
         """Return by how much a constraint may be exceeded during the stretches of tasks [m, or of a unit vector]."""
@@ -146,7 +147,8 @@ class Motions:
             velocity = np.cross((moves[:, None] * turning).sum(1), at) + (moves[:, None] * along).sum(1)
         # The distance is convex: along a straight way it is largest at an end.
         worst = np.maximum(kept.off(at + half * velocity), kept.off(at - half * velocity))
-        return np.asarray(worst + self._stray(half[:, 0], moves, rate, bend, lever) - kept.limit)
+        stray, off = self._lost(half[:, 0], moves, rate, bend, lever)
+        return np.asarray(worst + stray + np.sqrt(off) - kept.limit)
 
     def _middle_states(self, key: Ints) -> tuple[Floats, ...]:
         """Return rates and bends of joints, poses of frames, and how joints turn and shift the root's frame."""
@@ -163,13 +165,16 @@ class Motions:
         along = np.where(self._slides[:, None], rate[:, :, None] * axes, np.cross(origin[:, 1:], turning))
         return rate, bend, rotation, origin, turning, along
 
-    def _stray(self, half: Floats, moves: Bools, rate: Floats, bend: Floats, lever: Floats) -> Floats:
-        """Return how far points stray at most from where their velocities take them, (n,)."""
+    def _lost(self, half: Floats, moves: Bools, rate: Floats, bend: Floats, lever: Floats) -> Floats:
+        """Return how far points stray at most from where their velocities take them, and the square of how far they are
+        off by the tolerance, (2, n).
+        """
         fastest = np.abs(rate) + half[:, None] * bend
         turns = moves * fastest * ~self._slides
         before = np.cumsum(turns, axis=1) - turns
-        each = 0.5 * half[:, None] ** 2 * (fastest * (2 * before + turns) + bend) + self._off
-        return np.asarray((moves * np.where(self._slides, 1.0, lever) * each).sum(1))
+        each = 0.5 * half[:, None] ** 2 * (fastest * (2 * before + turns) + bend)
+        arm = moves * np.where(self._slides, 1.0, lever)
+        return np.stack([(arm * each).sum(1), np.broadcast_to(arm**2 * self._off, each.shape).sum(1)])
 
     def _reach_by_corners(self, node: Ints, rows: Ints, local: Floats, far: Floats) -> None:
         """Write how far nodes reach by their corners, in the rows that are answered so."""

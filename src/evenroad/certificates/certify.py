@@ -72,7 +72,7 @@ def certify(
         curves = straight(continued(path, world.space, path[0]))
         answers, directions = answers_of(claim, curves)
     else:
-        curves, answers, directions = _near(claim, states)
+        curves, answers, directions = _near(claim, states, continued(path, world.space, path[0]))
     lines = [keep.line for keep in claimed.beside.keeps]
     joints = claimed.beside.joints
     lines += [f"limit {fast!r} {hard!r} {name}" for name, (fast, hard) in limits.items() if name in joints]
@@ -154,14 +154,16 @@ def _claimed_by(read: ReadRobot, sources: Sources, world: ArmWorld, keeps: Seque
     return OfFiles((robot, scene), read.links(claimed), claims, claimed)
 
 
-def _near(claim: Claim, states: Floats) -> tuple[Curves, npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
-    """Return curves along states, and their answers: nearer ones where the first are too far to be proved free."""
+def _near(
+    claim: Claim, states: Floats, path: Floats
+) -> tuple[Curves, npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
+    """Return curves along states of a path, and their answers: nearer ones where the first are not proved free."""
     *others, finest = TOLERANCES
     for tolerance in others:
-        curves = driven(states, tolerance)
+        curves = driven(states, path, tolerance)
         with suppress(InvalidValue):
             return curves, *answers_of(claim, curves)
-    curves = driven(states, finest)
+    curves = driven(states, path, finest)
     return curves, *answers_of(claim, curves)
 
 

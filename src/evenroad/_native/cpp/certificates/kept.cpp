@@ -32,7 +32,8 @@ Keeping keeping(Motions& motions, const Kept& kept, const Task& task) {
   const Vector from = is_axis ? Vector{} : moving.origin, own = placed(moving, kept.own) - moving.origin + from;
   const Vector velocity = cross(moving.screw.spin, own) + (is_axis ? Vector{} : moving.screw.drift);
   const double accelerated = is_axis ? carried.turning * carried.turning + carried.bending : carried.stray;
-  const double strayed = 0.5 * carried.half * carried.half * accelerated + (is_axis ? carried.twisted : carried.loose);
+  const double strayed =
+      0.5 * carried.half * carried.half * accelerated + std::sqrt(is_axis ? carried.twisted : carried.loose);
   // A convex function is largest at an end.
   const double worst = std::max(off(kept, own + velocity * carried.half), off(kept, own - velocity * carried.half));
   if (worst + strayed <= kept.limit + SLACK) return Keeping::KEPT;

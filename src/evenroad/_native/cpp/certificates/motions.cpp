@@ -46,7 +46,10 @@ Vector as_seen(const Moving& moving, const Vector& functional) {
 }
 
 Motions::Motions(const Frames& frames, const Curves& curves, double tolerance)
-    : frames_(frames), curves_(curves), tolerance_(tolerance), chains_(1) {
+    : frames_(frames), curves_(curves), chains_(1) {
+  std::vector<double> moves(curves.joints);
+  for (const std::int64_t column : frames.column) moves[static_cast<std::size_t>(column)] += 1.0;
+  off_ = tolerance * tolerance * *std::max_element(moves.begin(), moves.end());
   for (std::size_t k = 0; k < frames.count(); k++) {
     double most = 0.0;
     for (std::size_t curve = 0; curve < curves.count(); curve++) {
@@ -151,10 +154,10 @@ Carried Motions::carried(const State& at, double half, std::int64_t frame, std::
   for (std::size_t i = shared; i < chain.size(); i++) {
     const std::size_t k = chain[i];
     const bool slides = frames_.slides[k] != 0;
-    const double fastest = std::abs(at.rate[k]) + half * at.bend[k], off = std::abs(frames_.factor[k]) * tolerance_;
+    const double fastest = std::abs(at.rate[k]) + half * at.bend[k], off = frames_.factor[k] * frames_.factor[k] * off_;
     const double turns = slides ? 0.0 : fastest, arm = slides ? 1.0 : levers_[i];
     carried.stray += arm * (fastest * (2.0 * carried.turning + turns) + at.bend[k]);
-    carried.loose += arm * off;
+    carried.loose += arm * arm * off;
     if (!slides) carried.turning += turns, carried.bending += at.bend[k], carried.twisted += off;
     moving.screw = {moving.screw.spin + at.turning[k], moving.screw.drift + at.along[k]};
   }
@@ -173,14 +176,16 @@ Moved Motions::moved(const Task& task) {
   const auto &chain = chains_[static_cast<std::size_t>(both[0]->frame)],
              &other = chains_[static_cast<std::size_t>(both[1]->frame)];
   std::size_t shared = 0;
+  double loose = 0.0;
   while (shared < chain.size() && shared < other.size() && chain[shared] == other[shared]) shared++;
   for (int side = 0; side < 2; side++) {
     const Node& node = *both[side];
     const Carried one = carried(at, moved.half, node.frame, shared, node.reach);
     moved.nodes[side] = one.moving;
     moved.nodes[side].node = &node;
-    moved.stray += one.stray, moved.loose += one.loose;
+    moved.stray += one.stray, loose += one.loose;
   }
+  moved.loose = std::sqrt(loose);
   if (in_box()) add_diagonals(at, task, shared, moved);
   return moved;
 }

@@ -61,7 +61,8 @@ struct Moving {
 };
 
 /// What is known of a task: its two nodes, half of its length, a bound of their acceleration, and how far they are from
-/// the curve at most.  In a cell of a box the nodes move along each diagonal, of which `others` has all but the first.
+/// where the curve takes them at most.  In a cell of a box the nodes move along each diagonal, of which `others` has
+/// all but the first.
 struct Moved {
   Moving nodes[2];
   double half = 0.0, stray = 0.0, loose = 0.0;
@@ -72,6 +73,8 @@ struct Moved {
 };
 
 /// How a frame moves against the root: its directions turn by at most the sum of rates, plus that of their changes.
+/// `loose` and `twisted` are squares of how far what it carries, and its directions, are from where the curve takes
+/// them.
 struct Carried {
   Moving moving;
   double half = 0.0, stray = 0.0, loose = 0.0, turning = 0.0, bending = 0.0, twisted = 0.0;
@@ -88,7 +91,7 @@ Vector as_seen(const Moving& moving, const Vector& functional);
 
 class Motions {
  public:
-  /// Joints are as far as `tolerance` from the curves.
+  /// Configurations are as far as `tolerance` from the curves.
   Motions(const Frames& frames, const Curves& curves, double tolerance);
 
   /// Joints are anywhere in a box.
@@ -120,7 +123,7 @@ class Motions {
   Frames frames_;
   Curves curves_;
   Ranges box_;
-  double tolerance_ = 0.0;
+  double off_ = 0.0;  // square of the tolerance, times the largest number of joints that one column moves
   std::vector<double> low_, middle_, high_;       // of the cell of a box
   std::vector<std::vector<std::size_t>> chains_;  // joints above each frame, from the root
   std::vector<double> slide_, shift_;             // how far each joint slides at most, and is from the one before
