@@ -9,8 +9,8 @@ from evenroad_verify.shapes import Shape
 
 Part = tuple[Shape, Ints]
 """A shape and the rows of its elements."""
-_MOST = 4_000_000
-"""Products that are held at once."""
+_MOST = 1 << 16
+"""Products that are held at once: more do not fit a fast memory."""
 
 
 class Nodes:
