@@ -56,14 +56,18 @@ class Pairs(RobotOptions):
         with progress_shown("pairs") as progress:
             pairs = untested_pairs(links, model.dropped, self.seconds, progress)
         never = all(pair.status == "never" for pair in pairs if not pair.adjacent)
-        if self.certificate is not None:
-            certify_pairs(read, links, pairs, self.certificate)
         if self.json:
             record = {"robot": self.robot, "srdf": None if self.srdf is None else str(self.srdf)}
             print(dumps(record | {"pairs": [_record(pair) for pair in pairs]}, indent=2))
-            return int(not never)
-        rows = [(" ".join(pair.links), pair.reason, str(len(pair.joints)), _said(pair)) for pair in pairs]
-        print_table(rows or [("none", "", "", "")], ("links", "not tested", "joints between", "ever in contact"))
+        else:
+            rows = [(" ".join(pair.links), pair.reason, str(len(pair.joints)), _said(pair)) for pair in pairs]
+            print_table(rows or [("none", "", "", "")], ("links", "not tested", "joints between", "ever in contact"))
+        if self.certificate is not None:
+            count = certify_pairs(read, links, pairs, self.certificate)
+            if not self.json:
+                print(
+                    f"certificate of pairs that never touch ({count}): {self.certificate}, which evenroad-verify checks"
+                )
         return int(not never)
 
 
