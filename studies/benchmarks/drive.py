@@ -9,7 +9,7 @@ map of nav2_bringup, ``tpcap_case1.csv`` a case of TPCAP; neither is in the repo
     python -m studies.benchmarks.drive --cases tpcap_case*.csv
 
 With `--best`, each query is planned again with other seeds for that many seconds of processor time, and lengths are
-compared with that of the shortest path.
+compared with that of the shortest path.  Cusps are compared with those of paths that the lattice finds without trees.
 
 Polygons of a case are tested as they are.
 """
@@ -24,14 +24,19 @@ from pathlib import Path
 import numpy as np
 
 import evenroad as er
+from evenroad._native.drive import CarQuery, Steering
 from evenroad.driving import CarWorld, load_parking_case
+from evenroad.driving.car_space import CarSpace, as_pieces, cusps_of
 from evenroad.planning import PlanResult
+from evenroad.planning.planners.car import SHORTCUTS
 
 ROBOT = [(-0.45, -0.31), (0.45, -0.31), (0.45, 0.31), (-0.45, 0.31)]
 RADII = 0.4, 1.5, 4.0
 CAR = [(-0.929, -0.971), (3.76, -0.971), (3.76, 0.971), (-0.929, 0.971)]
 """The car of TPCAP around the middle of its rear axle."""
 TURNING = 2.8 / math.tan(0.75)
+LATTICE_ROUNDS = 250
+"""Rounds of a lattice of 400 poses each: some tenths of a second."""
 STEP = 0.002
 """Distance of poses along a path of a case that are looked at once more [m]."""
 
@@ -83,6 +88,17 @@ def on_map(path: Path, count: int, seconds: float, *, reverse: bool) -> None:
         report(f"{path.stem}, radius {radius:g}", results, times, bad)
 
 
+def cusps_of_lattice(world: CarWorld, start: np.ndarray, goal: np.ndarray) -> int | None:
+    """Return the number of cusps of a path without trees, after the same shortcuts; None where there is none soon."""
+    space = world.space
+    assert isinstance(space, CarSpace), "the world is of a car"
+    steering = Steering(space.turning_radius, space.spot, space.reverse, space.turning_radius)
+    query = CarQuery(world.vehicle, steering, start, goal, 0)
+    if not query.search(LATTICE_ROUNDS, has_trees=False):
+        return None
+    return cusps_of(as_pieces(query.path(SHORTCUTS)[0], space))
+
+
 def lengths(path: Path, count: int, seconds: float) -> None:
     """Compare the length of each path with the best one of a long run."""
     grid = er.load_map(path)
@@ -90,9 +106,11 @@ def lengths(path: Path, count: int, seconds: float) -> None:
         world = grid.world(footprint=ROBOT, turning_radius=radius)
         q = world.space.from_cube(np.random.default_rng(2).random((40 * count + 400, 3)))
         q = q[world.valid(q)][: 2 * count]
-        ratios = []
+        ratios, cusps = [], []
         for start, goal in zip(q[:count], q[count:], strict=True):
             first = er.plan(world, start, goal)
+            others = cusps_of_lattice(world, start, goal)
+            cusps += [(first.cusps, others)] if first.solved and others is not None else []
             best, seed, began = first.cost, 0, time.thread_time()
             while first.solved and time.thread_time() - began < seconds:
                 seed += 1
@@ -100,9 +118,10 @@ def lengths(path: Path, count: int, seconds: float) -> None:
                 best = min(best, other.cost) if other.solved else best
             ratios += [first.cost / best] if first.solved else []
         median, p95, most = np.percentile(ratios, (50, 95, 100))
+        own, others = np.mean(cusps, axis=0)
         print(
             f"{path.stem}, radius {radius:g}: {len(ratios)} lengths by the best of {seconds:g} s: {median:.3f},"
-            f" p95 {p95:.3f}, max {most:.3f}",
+            f" p95 {p95:.3f}, max {most:.3f}; {own:.2f} cusps, of the lattice alone {others:.2f} ({len(cusps)} paths)",
             flush=True,
         )
 

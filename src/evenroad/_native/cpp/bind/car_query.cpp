@@ -82,9 +82,9 @@ void make_query(drive::CarQuery* self, const drive::Vehicle& vehicle, const driv
   });
 }
 
-bool search(drive::CarQuery& query, std::int64_t rounds) {
+bool search(drive::CarQuery& query, std::int64_t rounds, bool has_trees) {
   require_budget(rounds, "rounds");
-  return without_gil([&] { return query.search(rounds); });
+  return without_gil([&] { return query.search(rounds, has_trees); });
 }
 
 /// Pieces of a path, in map units.
@@ -116,7 +116,7 @@ void add_car_query(nb::module_& part) {
   nb::class_<drive::CarQuery>(part, "CarQuery", "A search for the path of a car between two free poses.")
       .def("__init__", &make_query, "vehicle"_a, "steering"_a, "start"_a.none(), "goal"_a.none(), "variant"_a,
            nb::keep_alive<1, 2>())
-      .def("search", &search, "rounds"_a)
+      .def("search", &search, "rounds"_a, "has_trees"_a = true)
       .def("path", &car_path, "shortcuts"_a)
       .def_prop_ro("nodes", &drive::CarQuery::nodes)
       .def_prop_ro("shortcuts", &drive::CarQuery::shortcuts)

@@ -34,15 +34,15 @@ CarQuery::CarQuery(const Vehicle& vehicle, const Steering& steering, const Pose&
       to_goal_(vehicle, start, goal),
       trees_(checks_, to_goal_, steering_, start, goal, variant) {}
 
-bool CarQuery::search(std::int64_t rounds) {
+bool CarQuery::search(std::int64_t rounds, bool has_trees) {
   for (; found_.empty() && rounds > 0; rounds--, round_++) {
-    if (search_once()) return true;
+    if (search_once(has_trees)) return true;
   }
   return !found_.empty();
 }
 
-bool CarQuery::search_once() {
-  if (trees_.grow(round_ == 0 ? BEFORE_LATTICE : TURNS)) {
+bool CarQuery::search_once(bool has_trees) {
+  if (has_trees && trees_.grow(round_ == 0 ? BEFORE_LATTICE : TURNS)) {
     found_ = trees_.path();
     return true;
   }

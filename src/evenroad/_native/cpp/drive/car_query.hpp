@@ -22,8 +22,8 @@ class CarQuery {
   CarQuery(const Vehicle& vehicle, const Steering& steering, const Pose& start, const Pose& goal,
            std::uint64_t variant);
 
-  /// Search that many rounds, of which the first is by trees alone; return whether there is a path.
-  bool search(std::int64_t rounds);
+  /// Search that many rounds, of which the first is by trees alone, or without trees; return whether there is a path.
+  bool search(std::int64_t rounds, bool has_trees);
 
   /// Return the path that was found, made shorter by that many tries, as far as there is time.  It is proved as it is
   /// driven from the start.
@@ -37,7 +37,7 @@ class CarQuery {
   std::int64_t shortcuts() const { return shortcuts_; }
 
  private:
-  bool search_once();
+  bool search_once(bool has_trees);
 
   Checks checks_;
   Steering steering_;

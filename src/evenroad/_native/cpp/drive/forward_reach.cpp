@@ -13,7 +13,7 @@ namespace evenroad::drive {
 namespace {
 
 /// Largest turn of a drive [rad], and its largest length, in radii of the disk inside: it jumps over no obstacle.
-constexpr double TURN = 0.35, LENGTH = 1.6;
+constexpr double TURN = 0.35, LENGTH = 2.2;
 /// Number of slices in that turn.  Rounding to slices turns a car by as much more as one of these.
 constexpr double SLICES = 4.0;
 constexpr std::int64_t MOST_SLICES = 720;
