@@ -1,6 +1,7 @@
 """Links that may touch: of arms in a plane, the law of cosines says how near a ball comes to another one."""
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -69,3 +70,17 @@ def test_links_with_one_joint_between_them_are_adjacent(tmp_path):
     pairs = [("base", "l0", "neighbours"), ("base", "nothing", "no shapes")]
     assert untested_pairs(links, pairs, 5.0, lambda *step: reported.append(step)) == [pair]
     assert reported == [(1, 1)]
+
+
+def test_seven_joints_between_two_links_are_not_proved_and_keep_to_the_time(tmp_path):
+    began = time.monotonic()
+    pair = decide_pair(arm(tmp_path, 0.1, (1.0, *[0.05] * 6)), ("base", "l6"), "disabled", 30.0)
+    assert (pair.status, len(pair.joints), pair.proof) == ("undecided", 7, None)
+    assert time.monotonic() - began < 20.0
+
+
+@pytest.mark.parametrize(("radius", "status"), [(0.29, "never"), (0.31, "touches")])
+def test_links_of_a_robot_without_joints_are_fixed_to_each_other(radius, status, tmp_path):
+    pair = decide_pair(arm(tmp_path, radius, (0.5,), kind="fixed"), ("base", "l0"), "disabled", 5.0)
+    # The ball is 0.5 m from that of the root, whose radius is 0.2 m.
+    assert (pair.status, pair.joints, pair.proof) == (status, (), None)

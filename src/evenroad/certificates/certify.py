@@ -154,9 +154,7 @@ def _claimed_by(read: ReadRobot, sources: Sources, world: ArmWorld, keeps: Seque
     return OfFiles((robot, scene), read.links(claimed), claims, claimed)
 
 
-def _near(
-    claim: Claim, states: Floats, path: Floats
-) -> tuple[Curves, npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
+def _near(claim: Claim, states: Floats, path: Floats) -> tuple[Curves, npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
     """Return curves along states of a path, and their answers: nearer ones where the first are not proved free."""
     *others, finest = TOLERANCES
     for tolerance in others:

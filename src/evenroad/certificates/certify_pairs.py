@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from evenroad.certificates.certify import packed, write_certificate
-from evenroad.certificates.link_pairs import MOST_JOINTS, LinkPair, Links, Proof
+from evenroad.certificates.link_pairs import LinkPair, Links, Proof
 from evenroad.certificates.plain import plain_scene
 from evenroad.certificates.robot_files import ReadRobot
 from evenroad.certificates.sources import SceneFiles
@@ -24,10 +24,9 @@ _LONGEST = 1 << 16
 def certify_pairs(read: ReadRobot, of: Links, pairs: Sequence[LinkPair], file: Path) -> int:
     """Write the certificate of those pairs of a robot's links that are proved never to touch; return their number.
 
-    Pairs that are fixed to each other, and those with more than six joints between them, are left out.  Raises
-    NotAvailable if none is left.
+    Pairs that are fixed to each other are left out.  Raises NotAvailable if none is left.
     """
-    shown = [(pair.links, pair.proof) for pair in pairs if pair.proof and len(pair.joints) <= MOST_JOINTS]
+    shown = [(pair.links, pair.proof) for pair in pairs if pair.proof]
     if not shown:
         raise NotAvailable("no certificate: it would have no pair of links that is proved never to touch")
     bodies = [link for link in of.robot.links if link in of.shapes]

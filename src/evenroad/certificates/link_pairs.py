@@ -30,7 +30,7 @@ from evenroad.robots.kinematics import poses_at, with_mimics
 from evenroad.scenes.scene import Scene
 
 MOST_JOINTS = 6
-"""Largest number of joints between two links of a certificate."""
+"""Largest number of joints between two links that are proved never to touch: a cell has 2^6 corners then."""
 _SAMPLES = 1000
 """Number of random states in which a contact is looked for first."""
 _BATCH = 50
@@ -112,7 +112,7 @@ class Links:
         found = [ranges_of(self.tree, moving, urdf, Scene(), (column,)) for column in range(len(moving))]
         self.endless = {column for column, ranges in enumerate(found) if ranges is None}
         turn = (-math.pi, math.pi)
-        self.limits = np.array([turn if each is None else (each.low[0], each.high[0]) for each in found])
+        self.limits = np.array([turn if each is None else (each.low[0], each.high[0]) for each in found]).reshape(-1, 2)
         self._leaves: dict[str, list[tuple[Floats, float]]] = {}
 
     def leaves(self, link: str) -> list[tuple[Floats, float]]:
@@ -148,7 +148,7 @@ def decide_pair(of: Links, links: tuple[str, str], reason: str, seconds: float) 
     bodies = tuple(bodies_of((shape for link in links for shape in of.shapes[link]), of.tree))
     claim = WorldClaim(of.tree, bodies, ((Owner(links[0]), Owner(links[1]), 0.0),), "shapes of the file")
     alone = claim.one_by_one(claim.pairs)
-    if nested(claim, middle) is not None or (not joints and in_contact(alone, middle)):
+    if nested(claim, middle) is not None or (not joints and in_contact(alone, np.append(middle, 0.0))):
         return pair("touches", middle, 0.0)
     if not joints:
         return LinkPair(links, reason, "never", (), {}, None)
@@ -161,6 +161,8 @@ def decide_pair(of: Links, links: tuple[str, str], reason: str, seconds: float) 
             contact = _contact(of, links, alone, columns)
             if contact is not None:
                 return pair("touches", contact, 0.0)
+            if len(columns) > MOST_JOINTS:
+                return nowhere
             answers = write_box(of.tree.native, alone.pairs[0].native, low, high, halved, _MOST)
     except BudgetSpent:
         answers = None
