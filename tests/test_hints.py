@@ -122,3 +122,26 @@ def test_of_many_names_those_that_are_near_are_named():
     told = str(among_names("robot", "franka_panda", known, "`evenroad robots` lists them"))
     assert told == "unknown robot 'franka_panda'; near names: panda, panda_hand; `evenroad robots` lists them"
     assert "near" not in str(among_names("robot", "zzz", known, "`evenroad robots` lists them"))
+
+
+@pytest.mark.parametrize(("name", "told"), [
+    ("MoveTo", "it is `evenroad.task.MoveTo`"), ("InvalidValue", "it is `evenroad.errors.InvalidValue`"),
+    ("save", "`result.save(file)` writes it"),
+    ("check_collision", "`er.ArmWorld(robot, scene).in_collision(q)` says it"),
+])  # fmt: skip
+def test_a_name_of_a_part_is_answered_with_where_it_is_and_not_with_what_is_alike(name, told):
+    with pytest.raises(AttributeError, match=re.escape(told)):
+        getattr(er, name)
+
+
+@pytest.mark.parametrize(("call", "told"), [
+    (lambda: er.Sphere(0.1, center=(0, 0, 0)), "'center'; it is `xyz`"),
+    (lambda: er.Cylinder(radius=0.1, height=0.3), "'height'; it is `length`"),
+    (lambda: er.PRM(n=100), "'n'; it is `points`"),
+    (lambda: er.FlightWorld(er.Scene(), max_speed=3), "'max_speed'; it is `speed`; known: acceleration, bounds, jerk"),
+    (lambda: er.plan(robot="ur5", scene="box-reach", start="home", goal="inside"), "plan is called as plan(world, "),
+    (lambda: er.Robot("ur5"), "er.load_robot(name or file) makes one"),
+])  # fmt: skip
+def test_a_keyword_is_answered_also_where_a_function_takes_others(call, told):
+    with pytest.raises(er.errors.EvenroadError, match=re.escape(told)):
+        call()

@@ -201,6 +201,7 @@ def prepare(page: Path, names: dict[str, object]) -> None:
     if page.name in ARM_FILES:
         for name in ("ur5.urdf", "ur5.srdf"):
             shutil.copy(DATA / name, name.replace("ur5", "my_arm"))
+        shutil.copytree(DATA / "meshes", "meshes")
         scene = yaml.safe_load((DATA / "box-reach.yaml").read_text())
         Path("today.yaml").write_text(yaml.safe_dump(scene))
         Path("cell.yaml").write_text("obstacles:\n  fence: {shape: box, size: [0.1, 2, 1], xyz: [-1, 0, 0.5]}\n")

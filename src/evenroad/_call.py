@@ -8,9 +8,11 @@ from inspect import Parameter, signature
 from types import FunctionType
 from typing import TypeVar
 
-from evenroad._hints import UnknownAttribute, unknown_keyword
+from evenroad._hints import UnknownAttribute, is_keyword, keyword_hint, unknown_keyword
 from evenroad.errors import EvenroadError, InvalidValue
 
+_MAKERS = {"Robot": "er.load_robot(name or file)", "PlanResult": "er.plan", "Trajectory": "result.trajectory()"}
+"""What makes values whose class is seldom called."""
 Called = TypeVar("Called", bound=Callable[..., object])
 
 
@@ -65,13 +67,17 @@ def _explained(
     if name == "__init__":
         # The class that was called may have its __init__ from another.
         name = type(given[0]).__name__
-    every = {key: each for key, each in signature(function).parameters.items() if key != "self"}
-    taken = {key: each for key, each in every.items() if each.kind is not Parameter.VAR_KEYWORD and key[0] != "_"}
+    every = {key: each for key, each in signature(function).parameters.items() if key != "self" and key[0] != "_"}
+    taken = {key: each for key, each in every.items() if each.kind is not Parameter.VAR_KEYWORD}
     keywords = [key for key, each in taken.items() if each.kind is not Parameter.POSITIONAL_ONLY]
     strange = [key for key in named if key not in keywords]
-    if strange and len(taken) == len(every):
+    if len(taken) < len(every):
+        # It takes other keywords, too: only of what has another name here is it sure that it is none of them.
+        strange = [key for key in strange if keyword_hint(key, keywords) and not is_keyword(key)]
+    if strange:
         return unknown_keyword(f"keyword of {name}", strange[0], keywords)
     alone = [key for key, each in taken.items() if each.kind is Parameter.KEYWORD_ONLY]
     first = [key for key in taken if key not in alone]
     words = ", ".join([*first, *(["*", *alone] if alone else [])])
-    return InvalidValue(f"{name} is called as {name}({words}): {text.partition('() ')[2] or text}")
+    maker = f"; {_MAKERS[name]} makes one" if name in _MAKERS else ""
+    return InvalidValue(f"{name} is called as {name}({words}): {text.partition('() ')[2] or text}{maker}")

@@ -44,10 +44,12 @@ class KnowsElsewhere(type):
 
 def hint_of_module(name: str, known: Iterable[str]) -> str:
     """Return what an unknown name of a module may mean, or "" where nothing is near."""
-    if (answer := _answer(name, _tables()["modules"])) is not None:
+    homes = _homes_of(name)
+    same = [home for home in homes if home.endswith(f".{name}")]
+    if not same and (answer := _answer(name, _tables()["modules"])) is not None:
         return _in_words(answer)
-    if homes := _homes_of(name):
-        return f"it is `{homes[0]}`"
+    if homes:
+        return f"it is `{(same or homes)[0]}`"
     meant = _near_names(name, known)
     return f"did you mean `{meant[0]}`?" if meant else ""
 
@@ -65,6 +67,11 @@ def keyword_hint(keyword: str, known: Collection[str]) -> str:
     table, plain = _tables()["keywords"], _plain(keyword)
     here = [answer for answer, elsewhere in table.items() if answer in known and plain in elsewhere]
     return f"it is `{here[0]}`" if here else ""
+
+
+def is_keyword(name: str) -> bool:
+    """Return whether a keyword has this name here, of some function."""
+    return name in _tables()["keywords"]
 
 
 def among_names(what: str, name: str, known: Iterable[str], listing: str) -> UnknownName:

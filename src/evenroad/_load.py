@@ -58,6 +58,8 @@ def load(
     GridMap(160 x 240 cells of 0.05, 26% occupied)
     """
     file = as_file("what is loaded", path)
+    if file.is_dir():
+        raise BrokenFile(f"{path} is a folder, not a file")
     suffix = file.suffix.lower()
     if suffix == ".json":
         return _of_json(path)
@@ -71,13 +73,15 @@ def load(
         from evenroad.driving.polygon_map import PolygonMap
 
         return PolygonMap(path)
+    from evenroad.loading.find import ROBOTS
     from evenroad.scenes.scene_file import SCENES, is_scene, load_scene
     from evenroad.world.gridmap.load import SHIPPED, find_map
 
     if not suffix and not (file.exists() or find_map(path).is_file() or file.name in SCENES):
-        raise UnknownName.among(
-            "file, scene or map", file.name, (*SCENES, *(name.partition(".")[0] for name in SHIPPED))
-        )
+        if file.name in ROBOTS:
+            raise UnknownName(f"{file.name!r} is a robot: er.load_robot({file.name!r}) reads it")
+        maps = [name.partition(".")[0] for name in SHIPPED]
+        raise UnknownName.among("file, scene or map", file.name, (*SCENES, *maps))
     if suffix in _SCENES or (suffix in ("", ".yaml", ".yml") and (file.stem in SCENES or is_scene(path))):
         return load_scene(path)
     if suffix in _MAPS or not suffix:

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from PIL import Image
 
 import evenroad as er
 
@@ -57,3 +58,8 @@ def test_a_plan_is_printed_as_json(run, tmp_path):
     record = json.loads(out)
     written = json.loads((tmp_path / "plan.json").read_text())
     assert {**record, "sha256": written["sha256"]} == written
+
+
+def test_a_picture_of_the_same_name_is_not_taken_for_the_map_that_ships(run, tmp_path):
+    Image.new("L", (30, 20), 255).save(tmp_path / "maze3.png")
+    assert "maze3        640 by 480 cells of 1 pixel" in run("maps")[1]

@@ -215,3 +215,12 @@ def test_padding_is_of_all_links_of_single_ones_or_of_a_file_and_the_plan_keeps_
     assert (code, "--padding must be numbers" in err) == (2, True)
     shown = answer(*words, "--padding", 0.3, code=1)[1]
     assert "is nearer than the padding 0.3 to" in " ".join(shown.split())
+
+
+@pytest.mark.parametrize(("words", "told"), [
+    (["plan", "box-reach", "--robot", "ur5", "--start", "home", "--goal", "inside", "--seconds", "1"], "it is --time"),
+    (["plan", "office.yaml", "--start", "1", "2", "--goal", "8.5", "3", "--radius", "0.2"], "it is --robot-radius"),
+    (["plan", "--scene", "box-reach", "--robot", "ur5", "--start", "home", "--goal", "inside"], "is the first word"),
+])  # fmt: skip
+def test_an_option_that_is_called_otherwise_elsewhere_is_answered_with_its_name_here(refuse, words, told):
+    assert told in refuse(*words)

@@ -11,6 +11,7 @@ from evenroad.cli import main
 from evenroad.errors import BrokenFile, UnknownName
 from evenroad.saved.world_value import value_of, world_of
 from evenroad.task import MoveTo, Task
+from tests.refused import refused
 
 CELLS = np.zeros((40, 60), dtype=bool)
 CELLS[:25, 30:34] = True
@@ -154,3 +155,19 @@ def test_a_file_is_loaded_by_what_it_holds(tmp_path):
     (tmp_path / "other.json").write_text(json.dumps(with_digest({"a": 1})))
     with pytest.raises(BrokenFile, match="neither a plan nor a trajectory"):
         er.load(tmp_path / "other.json")
+
+
+def test_what_is_no_plan_map_or_table_of_points_is_told_apart(tmp_path):
+    result = er.plan("box-reach", "home", "inside", robot="ur5")
+    result.save(tmp_path / "path.csv")
+    result.trajectory().save(tmp_path / "go.yaml")
+    flight = er.plan(er.FlightWorld(er.Scene(), speed=3.0, acceleration=4.0), er.State((0, 0, 2)), er.State((8, 0, 2)))
+    flight.trajectory().save(tmp_path / "flight.json")
+    for name, said in (
+        ("path.csv", "a plan or a trajectory is read from its .json"),
+        ("go.yaml", "is a trajectory for ROS 2"),
+        ("flight.json", "has the polynomials of a flight"),
+        ("", "is a folder"),
+    ):
+        refused(er.errors.BrokenFile, said, er.load, tmp_path / name)
+    refused(er.errors.UnknownName, r"er.load_robot\('ur5'\) reads it", er.load, "ur5")

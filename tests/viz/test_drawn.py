@@ -9,6 +9,7 @@ from PIL import Image
 
 import evenroad as er
 from evenroad.loading.cache import file_of
+from evenroad.loading.find import find_robot
 from evenroad.loading.load import load_model
 from evenroad.viz.bodies import robot_parts, robot_sets
 from evenroad.viz.parts import by_colour
@@ -133,6 +134,17 @@ def test_collision_bodies_stand_for_drawings_that_cannot_be_read_and_one_line_sa
     assert "missing.obj" in shown.note
     assert next(iter(shown.sets)) == "collision"
     assert np.abs(shown.sets["collision"]["tip"].corners).max() == pytest.approx(0.2)
+
+
+def test_an_arm_with_a_tool_looks_as_its_file_says_and_the_tool_as_its_shapes(arm, tmp_path):
+    (tmp_path / "hand.urdf").write_text(f'<robot name="hand"><link name="palm">{BALL}</link></robot>')
+    model = load_model(find_robot("ur5")[0])
+    robot = model.robot.with_tool(er.load_robot(tmp_path / "hand.urdf"), "tool0")
+    assert file_of(robot) == model.file
+    sets, bare = robot_sets(robot).sets, robot_sets(model.robot).sets
+    for name in ("visual", "collision"):
+        assert np.abs(sets[name]["palm"].corners).max() == pytest.approx(0.2)
+        np.testing.assert_array_equal(sets[name]["forearm_link"].corners, bare[name]["forearm_link"].corners)
 
 
 def test_the_file_of_a_robot_is_the_one_with_its_joints(tmp_path, arm):

@@ -73,9 +73,10 @@ class Maps(Names):
 
     def names(self) -> dict[str, str]:
         """Return the names of maps, with their sizes."""
-        from evenroad.world.gridmap.load import SHIPPED, load_map
+        from evenroad.world.gridmap.load import MAPS, SHIPPED, load_map
 
-        grids = {name.removesuffix(".png"): load_map(name) for name in SHIPPED}
+        # Not the file of that name here, such as a picture of a plan.
+        grids = {name.removesuffix(".png"): load_map(MAPS / name) for name in SHIPPED}
         units = {True: "m", False: "pixel"}
         return {
             name: f"{grid.shape[1]} by {grid.shape[0]} cells of {grid.resolution:g} {units[grid.frame.y_up]}"

@@ -16,6 +16,16 @@ AXES = ("-x", "-y", "-z")
 EARLIER = {"--family": "--sampler", "--certify": "--guarantees"}
 """Earlier name of an option -> its name; verbs without an option of the earlier name take it."""
 
+_ELSEWHERE = {
+    "--seconds": "--time", "--timeout": "--time", "--time-limit": "--time", "--max-time": "--time", "--rng": "--seed",
+    "--random-seed": "--seed", "--output": "--out", "--save": "--out", "--radius": "--robot-radius",
+    "--urdf": "--robot", "--arm": "--robot", "--end": "--goal", "--target": "--goal", "--pose": "--goal-pose",
+    "--traj": "--trajectory", "--margin": "--clearance", "--degrees": "--deg",
+}  # fmt: skip
+"""What others call an option -> its name here."""
+_WORLDS = {"--scene", "--map", "--world", "--input", "--file", "--plan"}
+"""What others call the first word of a verb."""
+
 
 def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     """Return a verb with the options of a command line; the last of repeated ones counts.
@@ -135,9 +145,10 @@ def require_known_options(program: str, words: Sequence[str], known: set[str]) -
     """Raise UnknownName, which suggests a near one, if an option among the words is none of the long names known."""
     for name in sorted(given_options([current_option(word, known) for word in words]) - known):
         # All of them would fill half a screen.
-        raise UnknownName(
-            f"unknown option of {program}: {shown(name)}; {near(name, known) or f'all options: {program} --help'}"
-        )
+        meant = _ELSEWHERE.get(name, "")
+        hint = f"it is {meant}" if meant in known else near(name, known) or f"all options: {program} --help"
+        hint = "the file or name is the first word, without an option" if name in _WORLDS else hint
+        raise UnknownName(f"unknown option of {program}: {shown(name)}; {hint}")
 
 
 def given_options(words: Sequence[str]) -> set[str]:

@@ -114,7 +114,7 @@ def _run(arguments: list[str]) -> int:
     if arguments[:1] == ["help"]:
         arguments = [*arguments[1:], "--help"]
     verb, words = (arguments or ["--help"])[0], arguments[1:]
-    if verb == "--version":
+    if verb in ("--version", "version"):
         for word in {*words} - {"-v", "--verbose"}:
             raise UnknownName.among("option of --version:", word, ("-v", "--verbose"))
         print(f"evenroad {__version__}")

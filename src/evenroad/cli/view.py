@@ -35,6 +35,7 @@ from evenroad.trajectory.car import are_free
 from evenroad.trajectory.car_states import CarTrajectory
 from evenroad.trajectory.corners import drivable
 from evenroad.viz.browser import how_to_open, open_browser
+from evenroad.world.gridmap import DiskWorld
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -108,8 +109,10 @@ class View(RobotOptions):
         if all(file is None for _, file, _ in named):
             if arm:
                 self._serve(plan)
-            else:
+            elif isinstance(plan.problem.world, DiskWorld | CarWorld):
                 self._write_page(self._page(plan))
+            else:
+                self._save_picture(plan, Path(f"{self.world.stem}.png"))
         return 0
 
     def _task(self) -> TaskResult | None:

@@ -9,6 +9,7 @@ from typing import ClassVar, TypedDict
 
 from evenroad._arrays import set_fields
 from evenroad._checks import FARTHEST, require_positive
+from evenroad._hints import keyword_hint
 from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.geometry.pose import IDENTITY, Pose
 
@@ -82,7 +83,9 @@ class Shape:
         if strange := sorted(placed.keys() - _KEYWORDS):
             # All are listed, because a hint by spelling misleads: `pos` is nearly `pose`, but means `xyz`.
             known = ", ".join(sorted(Placed.__annotations__))
-            raise UnknownName(f"unknown keyword of a {self.kind}: {shown(strange[0])}; known: {known}")
+            hint = keyword_hint(strange[0], _KEYWORDS)
+            said = f"unknown keyword of a {self.kind}: {shown(strange[0])}"
+            raise UnknownName(f"{said}; {hint}{hint and '; '}known: {known}")
         turned = {key: placed[key] for key in ("xyz", "rpy", "xyzw") if key in placed}
         pose = placed.get("pose", IDENTITY)
         if not isinstance(pose, Pose):

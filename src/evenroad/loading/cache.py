@@ -176,11 +176,11 @@ def know(asked: object, files: dict[Path, tuple[int, ...]], model: RobotModel) -
 def file_of(robot: Robot) -> RobotFile | None:
     """Return the file that a robot was loaded from in this process, if that is known.
 
-    Since then it may have got other limits, by its scene, and links of what it holds.  Of several files that fit, it is
-    the one with the most joints, and of these the newest.
+    Since then it may have got other limits, by its scene, links of what it holds, and a tool.  Of several files that
+    fit, it is the one with the most joints, and of these the newest.
     """
-    joined = _joined(robot)
-    known = [model for model, _ in reversed(list(_known)) if model.robot.name == robot.name]
+    joined, name = _joined(robot), robot.name.partition(" with ")[0]
+    known = [model for model, _ in reversed(list(_known)) if model.robot.name in (name, robot.name)]
     fit = [model for model in known if _joined(model.robot) <= joined]
     return max(fit, key=lambda model: len(model.robot.joints)).file if fit else None
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from evenroad._checks import as_file
 from evenroad._hints import among_names
-from evenroad.errors import UnknownName
+from evenroad.errors import UnknownName, near
 
 DATA = Path(__file__).parent / "data"
 ROBOTS = ("arm7", "ur5")
@@ -34,9 +34,10 @@ def find_robot(source: str | os.PathLike[str]) -> tuple[Path, Path | None]:
     if name not in known:
         if known:
             raise among_names("robot", name, {*ROBOTS, *known}, "`evenroad robots` lists them")
+        meant = near(name, ROBOTS) + " " if near(name, ROBOTS) else ""
         raise UnknownName(
-            f"there is no robot file {name!r}, and none of this name is shipped; shipped: {', '.join(ROBOTS)};"
-            " panda, kinova, xarm7 and others come with the extra: pip install 'evenroad[robots]'"
+            f"there is no robot file {name!r}, and none of this name is shipped; shipped: {', '.join(ROBOTS)}; {meant}"
+            "panda, kinova, xarm7 and others come with the extra: pip install 'evenroad[robots]'"
         )
     urdf = known[name]
     stems = (urdf.stem, urdf.stem.removesuffix("_robot"))

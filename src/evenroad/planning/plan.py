@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from evenroad._call import explains_calls
 from evenroad._rng import RngLike
 from evenroad._shared import once
 from evenroad._time_limit import BudgetSpent, within
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 _PLAIN = Reading()
 
 
+@explains_calls
 def plan(
     world: World | GridMap | PolygonMap | Scene | PathLike,
     start: ConfigurationLike,

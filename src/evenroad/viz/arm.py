@@ -128,11 +128,13 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld, file: RobotFile | None = 
 
 
 def kept_distance(result: PlanResult) -> str:
-    """Return the clearance of an arm's path and the two nearest bodies, as the end of a sentence."""
-    if result.clearance is None:
+    """Return the clearance of an arm's path and the two nearest bodies, as the end of a sentence.
+
+    Without two such bodies all obstacles are farther away than distances are measured, or there are none.
+    """
+    if result.clearance is None or result.nearest is None:
         return ""
-    pair = "" if result.nearest is None else ": {} from {}".format(*result.nearest)
-    return f"; keeps {1e3 * result.clearance:.1f} mm from obstacles{pair}"
+    return f"; keeps {1e3 * result.clearance:.1f} mm from obstacles: " + "{} from {}".format(*result.nearest)
 
 
 def save_arm_picture(

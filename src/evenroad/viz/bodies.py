@@ -52,10 +52,9 @@ def robot_sets(robot: Robot, file: RobotFile | None = None) -> RobotSets:
     visual, note, collides = dict[str, Part](), "", dict[str, Part]()
     if file is not None:
         visual, note = visual_drawing(file)
-        # What the robot holds is not in its file.
-        held = {link: part for link, part in shapes.items() if link in robot.holds}
-        collides = held | collision_drawing(file).links
-    collision = _coloured(robot, collides or shapes)
+        collides = collision_drawing(file).links
+    # What the robot holds, and its tool, are not in its file.
+    collision = _coloured(robot, shapes | collides)
     sets = {}
     if visual and not _equal(drawn := _coloured(robot, shapes | visual), collision):
         sets[VISUAL] = drawn

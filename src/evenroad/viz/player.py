@@ -87,7 +87,7 @@ def page_of(result: PlanResult, *, file: RobotFile | None = None, timed: Timed |
     """Return the text of the page that :func:`save_page` writes."""
     world = result.world
     if not isinstance(world, ArmWorld | DiskWorld | CarWorld):
-        raise NotAvailable("plans of arms and on maps can be shown; this one has another world, or none")
+        raise NotAvailable("plans of arms and on maps can be played; this one has another world, or none: see its plot")
     if result.path is None:
         raise NotAvailable(f"there is no path to play: {result.message}")
     kept = kept_distance(result) if isinstance(world, ArmWorld) else ""
@@ -123,7 +123,8 @@ def states_of(result: PlanResult, world: ArmWorld | DiskWorld | CarWorld, timed:
 def clearances(world: World, states: Floats) -> list[float] | None:
     """Return a lower bound of the distance from obstacles at each of some states, (n, dim), None if not known [m]."""
     if isinstance(world, ArmWorld):
-        return rounded(world.obstacle_distances(states), 4) if world.valid(states).all() else None
+        is_known = len(world.scene.obstacles) > 0 and bool(world.valid(states).all())
+        return rounded(world.obstacle_distances(states), 4) if is_known else None
     if isinstance(world, CarWorld):
         return rounded(world.distance(states), 4)
     if not isinstance(world, MeasuresPaths):
