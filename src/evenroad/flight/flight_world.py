@@ -225,6 +225,29 @@ class FlightWorld(OneOrMany):
         """Return a time that no flight from the start, (6,), to any goal, (g, 6), beats; at most 2.5 times the least.
 
         It heeds obstacles that stay and are as high as the bounds: see the guide.
+
+        Parameters
+        ----------
+        start : array_like, shape (6,)
+            Where flights begin.
+        goals : array_like, shape (g, 6)
+            Where they may end.
+
+        Returns
+        -------
+        float
+            That time [s].
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> wall = er.Box((1.0, 8.0, 9.0), xyz=(5, 3.5, 2), name="wall")
+        >>> bounds = [(-1, 11), (-9, 9), (1, 3)]
+        >>> world = er.FlightWorld(er.Scene([wall]), speed=6.0, acceleration=8.0, bounds=bounds)
+        >>> start, goal = er.State((0, 5, 2)), er.State((10, 5, 2))
+        >>> round(world.least_length(np.array(start), np.array([goal])), 1)
+        2.4
         """
         times = self.space.distance(np.broadcast_to(start, goals.shape), goals)
         begin = np.ascontiguousarray(start)
