@@ -16,8 +16,10 @@ constexpr std::uint32_t PER_LEAF = 2;
 constexpr double NEAR_CHORD = 1.0;
 /// Number of halvings after which a curve is as short as its tolerance, with much to spare.
 constexpr std::size_t DEEPEST = 64;
-/// Number of times that an interval around the nearest point of a segment becomes shorter by a third.
-constexpr int THIRDS = 12;
+/// Number of halvings of an interval around the nearest point of a segment.
+constexpr int HALVINGS_OF_SHARE = 7;
+/// Shortest step on a way out, as a share of the distance that is to be kept.
+constexpr double LEAST_EXIT = 0.05;
 
 /// Return the point of a box or a cylinder that is nearest to a point.
 Vector nearest_on(const robot::Exact& o, const Vector& at) {
@@ -256,22 +258,38 @@ std::optional<double> Bodies::first_contact(const Parabola& line, double time, d
   return first == none ? std::nullopt : std::optional(first);
 }
 
-/// The distance of a convex body is convex along a segment.
+/// The distance of a convex body is convex along a segment: where it grows, the nearest point lies behind.
 double Bodies::nearest_share(std::uint32_t body, const Vector& from, const Vector& to) const {
-  const auto squared = [&](double share) {
-    const Vector at = from + (to - from) * share;
-    return squared_length(at - near_to(body, at).point);
-  };
   double low = 0.0, high = 1.0;
-  for (int step = 0; step < THIRDS; step++) {
-    const double third = (high - low) / 3.0;
-    if (squared(low + third) <= squared(high - third)) {
-      high -= third;
-    } else {
-      low += third;
-    }
+  for (int halved = 0; halved < HALVINGS_OF_SHARE; halved++) {
+    const double middle = 0.5 * (low + high);
+    const Vector at = from + (to - from) * middle;
+    (dot(at - near_to(body, at).point, to - from) >= 0.0 ? high : low) = middle;
   }
   return 0.5 * (low + high);
+}
+
+std::optional<double> Bodies::exit_along(const Vector& from, const Vector& direction, double time, double distance,
+                                         double most) const {
+  double along = 0.0;
+  const auto gap = [&](std::uint32_t body) {
+    const Vector at = from + direction * along - solid_velocity(body) * time;
+    const Near near = near_to(body, at);
+    return norm(at - near.point) - near.rounding;
+  };
+  const auto leave = [&](std::uint32_t body) {
+    const double begin = along;
+    for (double left = distance - gap(body); left > 0.0 && along <= most; left = distance - gap(body)) {
+      along += std::max(left, LEAST_EXIT * distance);
+    }
+    return along == begin;
+  };
+  while (along <= most) {
+    const Vector at = from + direction * along;
+    const bool is_out = std::ranges::all_of(movers_, leave) && visit(at, at, {distance, distance, distance}, leave);
+    if (is_out) return along;
+  }
+  return std::nullopt;
 }
 
 Bodies::Nearest Bodies::nearest(const Vector& at, double time, double most) const {

@@ -56,6 +56,9 @@ class Bodies {
   /// Return the share of a straight flight, which begins at a time, that is nearest to the first body that a ball
   /// touches; none if none is touched.
   std::optional<double> first_contact(const Parabola& line, double time, double radius) const;
+  /// Return how far it is in a direction to where all bodies are at a distance at a time; none if it is beyond `most`.
+  std::optional<double> exit_along(const Vector& from, const Vector& direction, double time, double distance,
+                                   double most) const;
   /// Return the distance of a point from the nearest body at a time, at most `most`, and the number of the body.
   struct Nearest {
     double distance;
@@ -88,6 +91,7 @@ class Bodies {
 
   Near near_to(std::uint32_t body, const Vector& at) const;
   std::uint32_t build(std::uint32_t first, std::uint32_t end);
+  Vector solid_velocity(std::uint32_t body) const { return body < solids_.size() ? solids_[body].velocity : Vector{}; }
   Parabola seen_from(std::uint32_t mover, const Parabola& curve, double time) const;
   double nearest_share(std::uint32_t body, const Vector& from, const Vector& to) const;
   bool clears(std::uint32_t body, const Parabola& curve, double radius) const;

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t MOST_NODES = 600;
 /// How often a line beside a body may be blocked by another one before it is given up.
 constexpr int MOST_DEPTH = 2;
-/// Largest number of steps away from a body, of one radius each, and of halvings of the last one.
-constexpr int MOST_STEPS = 24, HALVINGS_BESIDE = 4;
+/// Largest way beside a body, in radii.
+constexpr double FARTHEST_BESIDE = 24.0;
 /// Lines are looked at in pieces of this many radii: most are blocked near to where they begin.
 constexpr double PIECE = 8.0;
 /// Nodes nearer to each other are one, as a share of the radius.
@@ -28,19 +28,9 @@ constexpr double WEIGHT = 1.4;
 /// Return the first free position in a direction from a blocked one, with this distance from all bodies.
 std::optional<Vector> first_free(const Airspace& airspace, const Vector& from, const Vector& direction, double away,
                                  double time) {
-  double along = 0.0, blocked = 0.0;
-  const auto is_free = [&](const Vector& at) { return airspace.bodies().nearest(at, time, away).distance >= away; };
-  for (int step = 0; step < MOST_STEPS; step++, blocked = along, along += airspace.radius()) {
-    const Vector at = from + direction * along;
-    if (!airspace.is_within(at)) return std::nullopt;
-    if (!is_free(at)) continue;
-    for (int halved = 0; halved < HALVINGS_BESIDE; halved++) {
-      const double middle = 0.5 * (blocked + along);
-      (is_free(from + direction * middle) ? along : blocked) = middle;
-    }
-    return from + direction * along;
-  }
-  return std::nullopt;
+  const auto along = airspace.bodies().exit_along(from, direction, time, away, FARTHEST_BESIDE * airspace.radius());
+  if (!along || !airspace.is_within(from + direction * *along)) return std::nullopt;
+  return from + direction * *along;
 }
 
 }  // namespace
