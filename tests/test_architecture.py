@@ -44,7 +44,8 @@ MAY_IMPORT = {
     "task": BASE | {"io", "saved", *VALUES, *OF_ARMS, "constraints", "roadmap", "planning", "trajectory"},
     "datasets": BASE | {*VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
     "qmc": BASE | {"points"},
-    "_load": BASE | {*VALUES, "driving", "loading", "scenes", "roadmap", "planning", "trajectory", "task", "io"},
+    "_load": BASE
+    | {*VALUES, "driving", "flight", "loading", "scenes", "roadmap", "planning", "trajectory", "task", "io"},
     "io": BASE | {"saved", *VALUES, *OF_ARMS, "roadmap", "planning", "trajectory"},
     "testing": BASE | {"space", "world"},
     "viz": BASE

@@ -12,6 +12,7 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
 
 if TYPE_CHECKING:
     from evenroad.driving.polygon_map import PolygonMap
+    from evenroad.flight.flight_trajectory import FlightTrajectory
     from evenroad.planning.result import PlanResult
     from evenroad.points.pointset import PointSet
     from evenroad.roadmap.roadmap import Roadmap
@@ -29,7 +30,7 @@ _MAPS = (".yaml", ".yml", ".png", ".pgm", ".bmp", ".map")
 @explains_calls
 def load(
     path: str | os.PathLike[str],
-) -> PlanResult | TaskResult | Saved | Scene | GridMap | PolygonMap | Roadmap | PointSet:
+) -> PlanResult | TaskResult | Saved | FlightTrajectory | Scene | GridMap | PolygonMap | Roadmap | PointSet:
     """Return what a file holds: a plan, a task's answer, a trajectory, a scene, a map, a roadmap or points.
 
     Robots are not among these, as a URDF may also be a scene: `load_robot` reads them.
@@ -42,7 +43,7 @@ def load(
 
     Returns
     -------
-    PlanResult, TaskResult, Trajectory, CarTrajectory, Scene, GridMap, PolygonMap, Roadmap or PointSet
+    PlanResult, TaskResult, Trajectory, CarTrajectory, FlightTrajectory, Scene, GridMap, PolygonMap, Roadmap or PointSet
 
     Raises
     ------
@@ -93,7 +94,7 @@ def load(
     raise UnknownName.among("kind of file", suffix, (".json", ".roadmap", _POLYGONS, *_POINTS, *_SCENES, *_MAPS))
 
 
-def _of_json(path: str | os.PathLike[str]) -> PlanResult | TaskResult | Saved:
+def _of_json(path: str | os.PathLike[str]) -> PlanResult | TaskResult | Saved | FlightTrajectory:
     record = read_json_file(path, "plan or trajectory")
     if isinstance(record, dict) and "query" in record:
         from evenroad.io import plan_of
@@ -103,6 +104,10 @@ def _of_json(path: str | os.PathLike[str]) -> PlanResult | TaskResult | Saved:
         from evenroad.task.save import task_result_of
 
         return task_result_of(record, path)
+    if isinstance(record, dict) and record.get("format") == "evenroad flight 1":
+        from evenroad.flight.flight_trajectory import flight_of
+
+        return flight_of(record, path)
     if isinstance(record, dict) and "format" in record:
         from evenroad.trajectory.formats import saved_of
 

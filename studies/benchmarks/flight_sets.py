@@ -34,8 +34,8 @@ def neighbours(n):
 
 def wall(rng, at, across, doors, thick=0.2):
     """Boxes of a wall along one axis with doors of some widths, over the whole side."""
-    ends = np.sort(rng.uniform(0.8, 9.2, len(doors)))
-    cuts = [0.0, *np.stack([ends - np.array(doors) / 2, ends + np.array(doors) / 2], axis=1).ravel(), 10.0]
+    middles = np.sort(rng.uniform(0.8, 9.2, len(doors)))
+    cuts = [0.0, *np.stack([middles - np.array(doors) / 2, middles + np.array(doors) / 2], axis=1).ravel(), 10.0]
     boxes = []
     for low, high in zip(cuts[::2], cuts[1::2], strict=True):
         if high - low > 1e-3:

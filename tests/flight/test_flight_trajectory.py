@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from tests.flight.oracle import flown
 
 WORLD = er.FlightWorld(er.Scene([er.Cylinder(0.3, 4, xyz=(5, 0, 2))]), speed=6.0, acceleration=8.0)
@@ -61,3 +61,40 @@ def test_what_it_cannot_do_is_refused(tmp_path):
         RESULT.trajectory(speed=3.0)
     with pytest.raises(UnknownName, match="flight"):
         RESULT.trajectory(acceleration=3.0)
+
+
+def test_thrust_and_tilt_are_those_of_the_sampled_motion_and_attitudes_point_along_the_thrust():
+    step, t = 1e-4, np.random.default_rng(0).uniform(1e-3, FLIGHT.duration - 1e-3, 4000)
+    pushes = (FLIGHT.at(t + step) - 2 * FLIGHT.at(t) + FLIGHT.at(t - step)) / step**2 + (0, 0, 9.80665)
+    tilts = np.arccos(pushes[:, 2] / np.linalg.norm(pushes, axis=1))
+    assert np.linalg.norm(pushes, axis=1).max() == pytest.approx(FLIGHT.most_thrust, abs=1e-4)
+    assert tilts.max() == pytest.approx(FLIGHT.most_tilt, abs=1e-4)
+    turns = FLIGHT.attitudes(yaw=0.4)
+    np.testing.assert_allclose(turns @ turns.transpose(0, 2, 1), np.broadcast_to(np.eye(3), turns.shape), atol=1e-12)
+    np.testing.assert_allclose(np.linalg.det(turns), 1.0)
+    thrust = FLIGHT.accelerations + np.array((0, 0, 9.80665))
+    np.testing.assert_allclose(turns[:, :, 2] * np.linalg.norm(thrust, axis=1)[:, None], thrust, atol=1e-12)
+    forward = turns[:, :, 0] @ (np.cos(0.4), np.sin(0.4), 0.0)
+    np.testing.assert_allclose(turns[:, :, 1] @ (np.cos(0.4), np.sin(0.4), 0.0), 0.0, atol=1e-12)
+    assert (forward > 0.0).all()
+    with pytest.raises(InvalidValue, match="yaw"):
+        FLIGHT.attitudes(yaw=np.nan)
+
+
+def test_a_saved_flight_is_loaded_as_it_was_and_a_damaged_one_refused(tmp_path):
+    FLIGHT.save(tmp_path / "go.json")
+    again = er.load(tmp_path / "go.json")
+    np.testing.assert_array_equal(again.pieces, FLIGHT.pieces)
+    assert again.world is None
+    record = json.loads((tmp_path / "go.json").read_text())
+    for change in (
+        {"pieces": []},
+        {"pieces": 3},
+        {"pieces": [{**record["pieces"][0], "x": [0, 1]}]},
+        {"pieces": [{**record["pieces"][0], "duration": -1}]},
+        {"pieces": [{**record["pieces"][0], "duration": float("nan")}]},
+        {"pieces": record["pieces"][:1] + record["pieces"][2:]},
+    ):
+        (tmp_path / "bad.json").write_text(json.dumps({**record, **change}))
+        with pytest.raises(BrokenFile, match=r"bad\.json is a damaged flight"):
+            er.load(tmp_path / "bad.json")

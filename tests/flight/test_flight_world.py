@@ -195,3 +195,22 @@ def test_time_does_not_go_back(elapsed):
     world = er.FlightWorld(er.Scene([]), speed=6.0, acceleration=8.0)
     with pytest.raises(InvalidValue, match="elapsed"):
         world.with_moved({}, {}, elapsed)
+
+
+def test_what_reaches_far_beyond_the_bounds_is_rounded_to_the_safe_side():
+    rng = np.random.default_rng(9)
+    for half in (1e6, 1e7, 1e8):
+        pose = er.Pose((0, 0, 0), rpy=tuple(rng.uniform(-3, 3, 3)))
+        middle = pose.apply(np.array([(-half, 0, 0)]))[0]
+        box = er.Box((2 * half, 1.0, 1.0), xyz=tuple(middle), rpy=pose.rpy)
+        world = FlightWorld(er.Scene([box]), 0.25, speed=1.0, acceleration=1.0, bounds=[(-1, 1)] * 3)
+        turn = box.pose.matrix[:3, :3].astype(np.longdouble)
+        spare = rng.uniform(-1, 1, 2000) * half * 1e-15
+        own = np.column_stack([0.25 + spare, rng.uniform(-0.4, 0.4, (2000, 2))])
+        at = np.asarray(own @ turn.T, dtype=float)
+        seen = (at.astype(np.longdouble) - np.array(box.pose.xyz, dtype=np.longdouble)) @ turn
+        beyond = np.maximum(np.abs(seen) - np.array((half, 0.5, 0.5), dtype=np.longdouble), 0)
+        gap = np.sqrt((beyond**2).sum(axis=1)) - np.longdouble(0.25)
+        free = world.valid(np.column_stack([at, np.zeros((2000, 3))]))
+        assert not free[gap < 0].any()
+        assert world.valid((*(turn @ np.array((0.2501, 0, 0))).astype(float), 0, 0, 0))

@@ -14,14 +14,19 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._checks import as_times, require_positive
-from evenroad._files import atomic_write
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import as_row, as_times, require_positive
+from evenroad._files import Json, atomic_write
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world import World
 
 STEP = 0.01
 """Default time between two states [s]: the cycle of many flight controllers, 100 Hz."""
 FORMAT = "evenroad flight 1"
+_UP = np.array((0.0, 0.0, 9.80665))
+"""Thrust by the mass that keeps a multirotor at its height [m/s^2]."""
+_NO_THRUST = 1e-9
+_JOINED = 1e-6
+"""Largest jump between two pieces of a file, as a share of the largest number [m, m/s]."""
 _SUFFIXES = (".csv", ".json")
 _MOST_STATES = 10_000_000
 """Largest number of states of a table."""
@@ -100,6 +105,32 @@ class FlightTrajectory:
         times = as_times(t, self.duration)
         return self._flown(times.reshape(-1)).positions.reshape(*times.shape, 3)
 
+    @property
+    def most_thrust(self) -> float:
+        """Largest thrust of a multirotor by its mass on the whole flight [m/s^2]: it is constant in each piece."""
+        return float(np.linalg.norm(self.pieces[:, 7:] + _UP, axis=1).max())
+
+    @property
+    def most_tilt(self) -> float:
+        """Largest angle between a multirotor's axis and the vertical on the whole flight [rad]."""
+        thrusts = self.pieces[:, 7:] + _UP
+        return float(np.arctan2(np.hypot(thrusts[:, 0], thrusts[:, 1]), thrusts[:, 2]).max())
+
+    def attitudes(self, yaw: float = 0.0) -> Floats:
+        """Return the attitudes of a multirotor at `times` as rotation matrices, (n, 3, 3); they jump between pieces.
+
+        Their third columns point along the thrust, acceleration less gravity, and their first ones are the nearest to a
+        horizontal direction: at an angle of `yaw` from x [rad].  InvalidValue where a piece has no such attitude.
+        """
+        angle = as_row("yaw", [yaw], 1)[0]
+        up = self.accelerations + _UP
+        aside = np.cross(up, (np.cos(angle), np.sin(angle), 0.0))
+        lengths = np.linalg.norm(up, axis=1, keepdims=True), np.linalg.norm(aside, axis=1, keepdims=True)
+        if min(each.min() for each in lengths) < _NO_THRUST:
+            raise InvalidValue("there is no attitude where a flight falls freely, or the thrust points along the yaw")
+        up, aside = up / lengths[0], aside / lengths[1]
+        return np.stack([np.cross(aside, up), aside, up], axis=2)
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write it: ``.csv``, the states at `times`, or ``.json``, the coefficients of the polynomials.
 
@@ -141,9 +172,31 @@ class FlightTrajectory:
         return f"FlightTrajectory({self.duration:.4g} s, {self.proof})"
 
 
-def flight_trajectory(world: World, pieces: Floats, *, step: float = STEP) -> FlightTrajectory:
+def flight_trajectory(world: World | None, pieces: Floats, *, step: float = STEP) -> FlightTrajectory:
     """Return the trajectory of pieces, (k, 10), whose states are at most a `step` apart [s]."""
     step = require_positive("step", step)
     if float(pieces[:, 0].sum()) / step > _MOST_STATES:
         raise InvalidValue(f"step must be larger: there would be more than {_MOST_STATES} states, got {step:g} s")
     return FlightTrajectory(pieces=pieces, step=step, proof="certified", world=world)
+
+
+def flight_of(record: Json, path: str | os.PathLike[str]) -> FlightTrajectory:
+    """Return the flight of a JSON record of a file, without its world; BrokenFile if its pieces do not join."""
+    try:
+        pieces = np.array([_piece_of(each) for each in record["pieces"]])
+        if not len(pieces) or not np.isfinite(pieces).all() or pieces[:, 0].min() < 0.0:
+            raise ValueError("its pieces must be finite numbers, with durations of at least 0 s")
+        flight = flight_trajectory(None, pieces)
+        t = pieces[:-1, :1]
+        reached = pieces[:-1, 1:7] + t * pieces[:-1, 4:10]
+        reached[:, :3] += 0.5 * t * t * pieces[:-1, 7:]
+        if np.abs(reached - pieces[1:, 1:7]).max(initial=0.0) > _JOINED * (1.0 + np.abs(pieces).max()):
+            raise ValueError("its pieces do not join")
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        raise BrokenFile(f"{path} is a damaged flight: {error}") from error
+    return flight
+
+
+def _piece_of(each: Json) -> list[float]:
+    rows = np.array([each[axis] for axis in "xyz"], dtype=float).reshape(3, 3)
+    return [float(each["duration"]), *rows[:, 0], *rows[:, 1], *(2.0 * rows[:, 2])]

@@ -11,10 +11,12 @@ from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad._native.flight import FlightQuery
 from evenroad._rng import RngLike, variant_of
+from evenroad._time_limit import BudgetSpent, within
 from evenroad.errors import shown
 from evenroad.flight.flight_world import FlightWorld
 from evenroad.geometry.pose import Pose
 from evenroad.planning.make_result import make_result, solution
+from evenroad.planning.planners.flight import searched
 from evenroad.planning.problem import Problem
 from evenroad.planning.result import PlanResult, Status
 from evenroad.planning.terminals import as_start_and_goals
@@ -22,7 +24,7 @@ from evenroad.planning.terminals import as_start_and_goals
 _TRIES = 40
 """Number of shortcuts of a new flight: it has to be there within a millisecond or two."""
 _SECONDS = 0.02
-"""Time after which a search begins no other round [s]."""
+"""Time after which a search ends [s]."""
 
 
 class FlightUpdates:
@@ -72,7 +74,10 @@ class FlightUpdates:
             return make_result(problem, status, message, timings={"search": now() - began})
         goal = int(np.argmax(free[1:]))
         query = FlightQuery(airspace, start, self._goals[goal], self._variant + self._failures)
-        if not _found(query):
+        try:
+            with within(_SECONDS):
+                searched([query], [0])
+        except BudgetSpent:
             self._failures += 1
             message = (
                 "no flight was found in time: the next update tries another sequence; fly the stop, if there is one"
@@ -80,12 +85,3 @@ class FlightUpdates:
             return make_result(problem, Status.BUDGET_SPENT, message, timings={"search": now() - began})
         path = query.shorten(_TRIES)
         return solution(problem, path, goal, planner="flight", timings={"search": now() - began})
-
-
-def _found(query: FlightQuery) -> bool:
-    """Return whether a search finds a flight in its time."""
-    end = now() + _SECONDS
-    while now() < end:
-        if query.search(1):
-            return True
-    return False

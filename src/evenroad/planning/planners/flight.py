@@ -80,7 +80,7 @@ class FlightSearch:
         order: list[int] = np.argsort(times, kind="stable").tolist()
         with attempt.watch("search"), until(attempt.time.part(attempt.began, BEFORE_REASONS)):
             try:
-                number = _searched(queries, order)
+                number = searched(queries, order)
             except BudgetSpent:
                 counts = _counts(queries)
                 message = (
@@ -91,7 +91,7 @@ class FlightSearch:
         return _result(attempt, queries, number)
 
 
-def _searched(queries: Sequence[FlightQuery], order: Sequence[int]) -> int:
+def searched(queries: Sequence[FlightQuery], order: Sequence[int]) -> int:
     """Return which query found a path first; BudgetSpent if none does in time."""
     while True:
         for number in order:

@@ -23,7 +23,7 @@ class Airspace {
 
   Airspace(Bodies bodies, const Bounds& bounds, const Limits& limits, double radius)
       : bodies_(std::move(bodies)), bounds_(bounds), limits_(limits), radius_(radius) {
-    double farthest = 0.0;
+    double farthest = bodies_.farthest();
     for (std::size_t k = 0; k < 3; k++) {
       farthest = std::max({farthest, std::abs(bounds.low[k]), std::abs(bounds.high[k])});
     }

@@ -99,28 +99,27 @@ Bodies::Bodies(std::vector<Solid> solids, std::vector<Triangle> triangles, std::
                std::vector<std::uint32_t> movers)
     : solids_(std::move(solids)),
       movers_(std::move(movers)),
-      triangles_(std::move(triangles)),
-      balls_(std::move(balls)) {
+      still_(std::make_shared<Still>(Still{std::move(triangles), std::move(balls), {}, {}})) {
   std::vector<bool> is_moving(count(), false);
   for (const std::uint32_t mover : movers_) is_moving[mover] = true;
   for (std::uint32_t body = 0; body < count(); body++) {
-    if (!is_moving[body]) order_.push_back(body);
+    if (!is_moving[body]) still_->order.push_back(body);
   }
-  if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
+  if (!still_->order.empty()) build(0, static_cast<std::uint32_t>(still_->order.size()));
 }
 
 std::uint32_t Bodies::build(std::uint32_t first, std::uint32_t end) {
-  const auto number = static_cast<std::uint32_t>(nodes_.size());
+  const auto number = static_cast<std::uint32_t>(still_->nodes.size());
   constexpr double far = std::numeric_limits<double>::infinity();
   Node node{{far, far, far}, {-far, -far, -far}, first, end - first, 0};
   Vector low, high;
   for (std::uint32_t i = first; i < end; i++) {
-    write_box(order_[i], low, high);
+    write_box(still_->order[i], low, high);
     for (std::size_t k = 0; k < 3; k++) {
       node.low[k] = std::min(node.low[k], low[k]), node.high[k] = std::max(node.high[k], high[k]);
     }
   }
-  nodes_.push_back(node);
+  still_->nodes.push_back(node);
   if (node.count <= PER_LEAF) return number;
   const Vector size = node.high - node.low;
   const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
@@ -130,11 +129,11 @@ std::uint32_t Bodies::build(std::uint32_t first, std::uint32_t end) {
     return std::pair(lower[axis] + upper[axis], body);
   };
   const std::uint32_t half = first + node.count / 2;
-  std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + end,
+  std::nth_element(still_->order.begin() + first, still_->order.begin() + half, still_->order.begin() + end,
                    [&](std::uint32_t a, std::uint32_t b) { return middle(a) < middle(b); });
   build(first, half);
   const std::uint32_t second = build(half, end);
-  nodes_[number].second = second, nodes_[number].count = 0;
+  still_->nodes[number].second = second, still_->nodes[number].count = 0;
   return number;
 }
 
@@ -147,41 +146,53 @@ void Bodies::write_box(std::uint32_t body, Vector& low, Vector& high) const {
     return;
   }
   body -= static_cast<std::uint32_t>(solids_.size());
-  if (body < triangles_.size()) {
-    const Triangle& each = triangles_[body];
+  if (body < still_->triangles.size()) {
+    const Triangle& each = still_->triangles[body];
     for (std::size_t k = 0; k < 3; k++) {
       const auto [least, most] = std::minmax({each.corners[0][k], each.corners[1][k], each.corners[2][k]});
       low[k] = least - each.rounding, high[k] = most + each.rounding;
     }
     return;
   }
-  const Ball& ball = balls_[body - triangles_.size()];
+  const Ball& ball = still_->balls[body - still_->triangles.size()];
   for (std::size_t k = 0; k < 3; k++) low[k] = ball.centre[k] - ball.radius, high[k] = ball.centre[k] + ball.radius;
+}
+
+double Bodies::farthest() const {
+  double farthest = 0.0;
+  const auto add = [&](const Vector& low, const Vector& high) {
+    for (std::size_t k = 0; k < 3; k++) farthest = std::max({farthest, std::abs(low[k]), std::abs(high[k])});
+  };
+  if (!still_->nodes.empty()) add(still_->nodes[0].low, still_->nodes[0].high);
+  Vector low, high;
+  for (const std::uint32_t mover : movers_) write_box(mover, low, high), add(low, high);
+  return farthest;
 }
 
 Bodies::Near Bodies::near_to(std::uint32_t body, const Vector& at) const {
   if (body < solids_.size()) return {nearest_on(solids_[body].shape, at), solids_[body].shape.rounding};
   body -= static_cast<std::uint32_t>(solids_.size());
-  if (body < triangles_.size()) return {nearest_on(triangles_[body], at), triangles_[body].rounding};
-  const Ball& ball = balls_[body - triangles_.size()];
+  if (body < still_->triangles.size())
+    return {nearest_on(still_->triangles[body], at), still_->triangles[body].rounding};
+  const Ball& ball = still_->balls[body - still_->triangles.size()];
   return {ball.centre, ball.radius};
 }
 
 template <class Visit>
 bool Bodies::visit(const Vector& from, const Vector& to, const Vector& width, const Visit& visit) const {
-  if (nodes_.empty()) return true;
+  if (still_->nodes.empty()) return true;
   const Segment segment(from, to);
   std::array<std::uint32_t, DEEPEST> waiting;
   waiting[0] = 0;
   for (std::size_t left = 1; left > 0;) {
-    const Node& node = nodes_[waiting[--left]];
+    const Node& node = still_->nodes[waiting[--left]];
     if (!segment.meets(node.low, node.high, width)) continue;
     if (node.count == 0) {
-      waiting[left++] = node.second, waiting[left++] = static_cast<std::uint32_t>(&node - nodes_.data()) + 1;
+      waiting[left++] = node.second, waiting[left++] = static_cast<std::uint32_t>(&node - still_->nodes.data()) + 1;
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; i++) {
-      if (!visit(order_[i])) return false;
+      if (!visit(still_->order[i])) return false;
     }
   }
   return true;

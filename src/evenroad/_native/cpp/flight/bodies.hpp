@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -67,15 +68,17 @@ class Bodies {
   Nearest nearest(const Vector& at, double time, double most) const;
   std::span<const std::uint32_t> movers() const { return movers_; }
   /// Return the bodies that do not move.
-  std::span<const std::uint32_t> statics() const { return order_; }
+  std::span<const std::uint32_t> statics() const { return still_->order; }
   /// Say whether a point is this near to a body that does not move.
   bool is_near(std::uint32_t body, const Vector& at, double distance) const {
     const Near near = near_to(body, at);
     return squared_length(at - near.point) <= (distance + near.rounding) * (distance + near.rounding);
   }
+  /// Return the largest coordinate of a body.
+  double farthest() const;
   /// Write the corners of a box around a body.
   void write_box(std::uint32_t body, Vector& low, Vector& high) const;
-  std::size_t count() const { return solids_.size() + triangles_.size() + balls_.size(); }
+  std::size_t count() const { return solids_.size() + still_->triangles.size() + still_->balls.size(); }
 
  private:
   /// A box around bodies; the first of two children follows at once.
@@ -99,12 +102,17 @@ class Bodies {
   template <class Visit>
   bool visit(const Vector& from, const Vector& to, const Vector& width, const Visit& visit) const;
 
+  /// What does not change when solids move: copies share it.
+  struct Still {
+    std::vector<Triangle> triangles;
+    std::vector<Ball> balls;
+    std::vector<std::uint32_t> order;
+    std::vector<Node> nodes;
+  };
+
   std::vector<Solid> solids_;
   std::vector<std::uint32_t> movers_;
-  std::vector<Triangle> triangles_;
-  std::vector<Ball> balls_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
+  std::shared_ptr<Still> still_;
 };
 
 }  // namespace evenroad::flight
