@@ -267,6 +267,12 @@ JOINTS = (("base", "pan", 0.0, "0 0 1", -3.0, 3.0), ("pan", "upper", 0.0, "0 -1 
           ("upper", "fore", 0.5, "0 -1 0", -2.6, 2.6))  # fmt: skip
 
 
+def _plates():
+    angles = (0.8, -0.8, 0.8 - np.pi, np.pi - 0.8)
+    plates = [er.Box((1.1, 0.005, 2.4), xyz=(0.65 * np.cos(a), 0.65 * np.sin(a), 0.1), rpy=(0, 0, a)) for a in angles]
+    return er.Scene([*plates, er.Box((3, 3, 0.005), xyz=(0, 0, 0.8))])
+
+
 @pytest.fixture(scope="module")
 def fenced(tmp_path_factory):
     """An arm of two links that turns about z between plates of 5 mm, under a plate that is too low for both upright."""
@@ -279,10 +285,7 @@ def fenced(tmp_path_factory):
         links.append(f'<child link="{child}"/><origin xyz="{along} 0 0"/><axis xyz="{axis}"/>')
         links.append(f'<limit lower="{low}" upper="{high}"/></joint>')
     (folder / "arm.urdf").write_text("\n".join([*links, "</robot>"]))
-    angles = (0.8, -0.8, 0.8 - np.pi, np.pi - 0.8)
-    plates = [er.Box((1.1, 0.005, 2.4), xyz=(0.65 * np.cos(a), 0.65 * np.sin(a), 0.1), rpy=(0, 0, a)) for a in angles]
-    scene = er.Scene([*plates, er.Box((3, 3, 0.005), xyz=(0, 0, 0.8))])
-    world = er.ArmWorld(er.load_robot(folder / "arm.urdf"), scene)
+    world = er.ArmWorld(er.load_robot(folder / "arm.urdf"), _plates())
     start, goal = np.array([0.0, 0.3, 0.4]), np.array([[1.6, 0.3, 0.4]])
     assert world.valid(np.vstack([start, goal])).all()
     sources = Sources(folder / "arm.urdf")
@@ -315,3 +318,23 @@ def test_a_plate_that_leaves_a_way_is_refused_by_both(change, fenced, tmp_path):
     words = [str(tmp_path / "forged.cert"), str(folder / "arm.urdf")]
     assert main(words) == 1
     assert subprocess.run([program("command"), *words], capture_output=True).returncode == 1
+
+
+def test_thin_plates_keep_all_postures_from_a_place_beyond_them(fenced, tmp_path):
+    folder, _ = fenced
+    robot, scene = er.load_robot(folder / "arm.urdf"), _plates()
+    world, file = er.ArmWorld(robot, scene), tmp_path / "arm.cert"
+    place = robot.fk([1.6, 0.3, 0.4], "fore")
+    goal = er.PoseGoal(place, "fore", position_only=True)
+    nowhere = np.zeros((0, 3))
+    no_path.certify_no_path(world, np.array([0.0, 0.3, 0.4]), nowhere, Sources(folder / "arm.urdf"), file, [goal])
+    assert file.stat().st_size < 30_000
+    words = [str(file), str(folder / "arm.urdf")]
+    assert main(words) == 0
+    assert subprocess.run([program("command"), *words], capture_output=True).returncode == 0
+    # The place that the start is at is in reach.
+    reached = er.PoseGoal(robot.fk([0.1, 0.4, 0.3], "fore"), "fore", position_only=True)
+    with pytest.raises(NotAvailable):
+        no_path.certify_no_path(
+            world, np.array([0.0, 0.3, 0.4]), nowhere, Sources(folder / "arm.urdf"), file, [reached]
+        )

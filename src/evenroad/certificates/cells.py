@@ -126,10 +126,14 @@ def decide(tree: Tree, witnesses: Witnesses, cells: Ints) -> None:
     cell, tried = cell[order], tried[order]
     rank = np.arange(len(cell)) - np.searchsorted(cell, cell)
     first = rank == 0
-    tree.along[cells] = tree.side[cells].argmax(axis=1)
+    widest = (tree.side[cells] * unit).argmax(axis=1)
+    tree.along[cells] = widest
     lost = losses(witnesses, frames, half, cell[first], tried[first])
     lost[tree.side[cells[cell[first]]] < 2] = -np.inf
     tree.along[cells[cell[first]]] = lost.argmax(axis=1)
+    # What is not known of a target depends on all joints alike: every other time it decides.
+    unsure = (tree.status[cells] != BEYOND).any(axis=1) & (tree.depth[cells] % 2 == 1)
+    tree.along[cells[unsure]] = widest[unsure]
     most = np.maximum(LEAST_TRIED, len(witnesses.pairs.ball) >> (tree.depth[cells[cell]] // 2))
     kept = rank < most
     tree.rows = np.concatenate([row[~new], cells[cell[kept]]]), np.concatenate([pair[~new], tried[kept]])
