@@ -17,6 +17,8 @@ constexpr double LEAST_SAVED = 1e-6;
 /// Number of tries that have to save this share of the cost together: else there are no more.
 constexpr std::int64_t BATCH = 24;
 constexpr double SAVED_IN_BATCH = 2e-3;
+/// Numbers of pieces that are replaced together at last: where random ends of shortcuts lie, short pieces are left.
+constexpr std::size_t MOST_TOGETHER = 5, LEAST_TOGETHER = 3;
 /// Number of poses on the path, in each batch, that are tried in the opposite direction.
 constexpr std::int64_t TURNS_ROUND = 4;
 
@@ -65,6 +67,15 @@ class Driven {
       drive(merged(steering_, pieces));
       return;
     }
+  }
+
+  /// Try to replace this number of pieces by a word, from each one on; return the number of tries.
+  std::int64_t shorten_pieces(std::size_t count) {
+    std::int64_t tries = 0;
+    for (std::size_t i = 0; i + count < begins_.size(); i++, tries++) {
+      shorten(begins_[i].after, begins_[i + count].after);
+    }
+    return tries;
   }
 
   /// Replace the whole path by two words through a pose on it, in the opposite direction, if it costs less.
@@ -149,6 +160,10 @@ std::int64_t shorten(Checks& checks, const Steering& steering, const Pose& start
       double from = k % 4 == 0 ? 0.0 : even[0] * total, to = k % 4 == 1 || k == 0 ? total : even[1] * total;
       if (from > to) std::swap(from, to);
       if (to - from >= SHORTEST * steering.per_radian()) driven.shorten(from, to);
+    }
+    for (std::size_t count = MOST_TOGETHER; count >= LEAST_TOGETHER && driven.cost() > enough; count--) {
+      look_at_clock();
+      k += driven.shorten_pieces(count);
     }
   } catch (const TimeIsOver&) {
   }
