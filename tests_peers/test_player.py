@@ -9,7 +9,9 @@ from PIL import Image
 
 import evenroad as er
 from evenroad.robots.kinematics import link_poses
+from evenroad.task import Attach, Detach, MoveTo, Task
 from evenroad.viz.player import save_page
+from evenroad.viz.task_page import page_of_task
 from tests_peers.chromium import opened
 
 BOX = [(-0.45, -0.31), (0.45, -0.31), (0.45, 0.31), (-0.45, 0.31)]
@@ -132,3 +134,23 @@ def test_a_robot_on_a_map_drives_in_the_browser(moves, size, tmp_path):
         assert tab.evaluate("document.documentElement.scrollWidth") <= size[0]
         assert tab.wrong == []
         assert [each for each in tab.requests if not each.startswith(("file:", "data:"))] == []
+
+
+def test_a_thing_of_a_task_is_where_it_was_put_at_the_end(tmp_path):
+    """The arm ends where it began, so the two pictures differ only where the can was and is."""
+    home, can = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0], er.Cylinder(0.03, 0.16, xyz=(0.5, 0.2, 0.06), name="can")
+    table = er.Box((0.8, 1.2, 0.04), xyz=(0.5, 0, -0.04), name="table")
+    world = er.ArmWorld("ur5", er.Scene([table, can], allowed={("base_link", "table")}))
+    grasp = er.PoseGoal(er.Pose((0.5, 0.2, 0.145), rpy=(np.pi, 0, 0)), tip="tool0", free_axis="z")
+    place = er.PoseGoal(er.Pose((0.5, -0.3, 0.061)), tip="can", free_axis="z")
+    carry = MoveTo(place, retreat=0.05, approach=0.05, away="up")
+    steps = [MoveTo(grasp, approach=0.1), Attach("can"), carry, Detach("can", onto="table"), MoveTo(home, retreat=0.1)]
+    (tmp_path / "page.html").write_text(page_of_task(Task(steps).plan(world, home)))
+    with opened((tmp_path / "page.html").as_uri(), 1100, 700) as tab:
+        tab.evaluate("play(false); go(0)")
+        before = np.asarray(Image.open(BytesIO(tab.screenshot())).convert("RGB"))[80:600].astype(int)
+        tab.evaluate("go(end)")
+        after = np.asarray(Image.open(BytesIO(tab.screenshot())).convert("RGB"))[80:600].astype(int)
+        assert tab.wrong == []
+    changed = (np.abs(before - after).max(axis=2) > 30).mean()
+    assert 0.001 < changed < 0.05

@@ -26,6 +26,11 @@ def test_a_flight_is_written_with_its_states_polynomials_and_picture(run, forest
     rows = (forest / "forest-flight.csv").read_text().splitlines()
     assert float(rows[-1].split(",")[0]) == record["duration"]
     assert (forest / "forest-flight.png").stat().st_size > 1000
+    code, out, error = run("fly", "forest.yaml", "--start", "0", "0", "2", "--goal", "12", "0", "2", *LIMITS, "--json")
+    assert "view its plan instead" in run("view", "forest-flight.json")[2]
+    said = json.loads(out)
+    assert (code, error, said["status"], said["duration"]) == (0, "", "solved", record["duration"])
+    assert said["files"] == [f"forest-flight.{suffix}" for suffix in ("csv", "json", "png")]
 
 
 @pytest.mark.parametrize(

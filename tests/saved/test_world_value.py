@@ -161,12 +161,9 @@ def test_what_is_no_plan_map_or_table_of_points_is_told_apart(tmp_path):
     result = er.plan("box-reach", "home", "inside", robot="ur5")
     result.save(tmp_path / "path.csv")
     result.trajectory().save(tmp_path / "go.yaml")
-    flight = er.plan(er.FlightWorld(er.Scene(), speed=3.0, acceleration=4.0), er.State((0, 0, 2)), er.State((8, 0, 2)))
-    flight.trajectory().save(tmp_path / "flight.json")
     for name, said in (
         ("path.csv", "a plan or a trajectory is read from its .json"),
         ("go.yaml", "is a trajectory for ROS 2"),
-        ("flight.json", "has the polynomials of a flight"),
         ("", "is a folder"),
     ):
         refused(er.errors.BrokenFile, said, er.load, tmp_path / name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,6 +50,8 @@ class Fly:
     """Name of the files.  Default: that of the scene in the current folder, with -flight."""
     no_picture: bool = False
     """Write no picture."""
+    json: bool = False
+    """Print the answer as JSON, not as a table."""
 
     def run(self) -> int:
         """Plan, write, report; return 0 when solved, else 1."""
@@ -65,11 +68,13 @@ class Fly:
         world = FlightWorld(load_scene(self.scene), self.radius, speed=self.speed, acceleration=self.acceleration)
         result = plan(world, start, goal, seconds=seconds, rng=self.seed)
         rows = [("status", f"{result.status}: {result.message}")]
+        said: dict[str, object] = {"status": str(result.status), "message": result.message, "seconds": result.seconds}
         if result.path is not None:
             flight = result.trajectory(step=step)
             flight.save(files[0])
             flight.save(files[1])
             assert result.gap is not None, "there is a path"
+            said |= {"duration": flight.duration, "proof": flight.proof, "gap": result.gap}
             rows += [
                 ("flight", f"{flight.duration:.4g} s in {counted(len(flight.pieces), 'polynomial piece')}"),
                 ("proof", "certified: the ball touches nothing at any instant"),
@@ -80,7 +85,10 @@ class Fly:
         if not self.no_picture:
             result.plot(files[-1])
         rows += [("took", f"{1e3 * result.seconds:.1f} ms"), ("files", ", ".join(map(str, files)) or "none")]
-        print_table(rows)
+        if self.json:
+            print(json.dumps(said | {"files": [str(file) for file in files]}, indent=2))
+        else:
+            print_table(rows)
         return 0 if result.solved else 1
 
 

@@ -113,7 +113,7 @@ def trajectory_of(record: Json, path: str | os.PathLike[str]) -> Trajectory:
     """Return the trajectory of a JSON record of a file; BrokenFile if its numbers are inconsistent."""
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         if isinstance(record, dict) and str(record.get("format")).startswith("evenroad flight "):
-            raise BrokenFile(f"{path} has the polynomials of a flight, for other programs; its plan is read again")
+            raise BrokenFile(f"{path} has the polynomials of a flight, without its world: view its plan instead")
         wrote = "as `evenroad plan --trajectory` writes it"
         raise BrokenFile(f"{path} is not a trajectory: its 'format' must be {FORMAT!r}, {wrote}")
     has_digest(record, path)
