@@ -115,11 +115,8 @@ class Motions:
         length = np.linalg.norm(direction, axis=1)
         demand((length > 1e-6).all(), "a direction has no length")
         direction = direction / length[:, None]
-        ends, lost, by_corners = (
-            np.zeros((2, len(tasks))),
-            np.zeros((2, len(tasks))),
-            np.flatnonzero(answers == CORNERS),
-        )
+        ends, lost = np.zeros((2, 2, len(tasks)))
+        by_corners = np.flatnonzero(answers == CORNERS)
         for s, sign in enumerate((1.0, -1.0)):
             moves = self._carries[frame[:, s]] & ~self._carries[frame[:, 1 - s]]
             lost += self._lost(half, moves, rate, bend, self._far[frame[:, s]] + reach[:, s, None])

@@ -33,7 +33,7 @@ def straight(path: Floats) -> Curves:
     return Curves(path)
 
 
-TOLERANCES = (5e-4, 2e-4, 5e-5, 1e-5, 1e-6)
+TOLERANCES = (5e-4, 2e-4, 1e-4, 1e-5, 1e-6)
 """How far states are from parabolas along them [rad or m]: certificates are tried in this order.
 
 Nearer ones are many: a way between two states of a corner is straight, and some 1e-4 from any smooth curve.
