@@ -6,6 +6,7 @@
 #include "bind/arrays.hpp"
 #include "certificates/text.hpp"
 #include "certificates/writer.hpp"
+#include "trajectory/parabolas.hpp"
 
 namespace evenroad::bind {
 
@@ -188,6 +189,18 @@ void add_certificates(nb::module_& module) {
         return nb::bytes(text.data(), text.size());
       },
       "rows"_a.none(), "before"_a);
+  part.def(
+      "parabolas",
+      [](nb::handle states, nb::handle low, nb::handle high, double tolerance) {
+        const Floats least(low, "low"), most(high, "high");
+        require(least.size() > 0, "low must have a joint or more"), most.of_shape({least.size()});
+        const FloatRows rows = float_rows(states, "states", least.size());
+        require(rows.shape(0) > 0, "states must be one or more");
+        return as_rows(
+            without_gil([&] { return trajectory::parabolas(rows.span(), least.span(), most.span(), tolerance); }),
+            least.size());
+      },
+      "states"_a.none(), "low"_a.none(), "high"_a.none(), "tolerance"_a);
   part.def("write_answers", &write_answers, "joint_tables"_a, "pairs"_a, "paths"_a, "most"_a);
   part.def("write_box", &write_box, "joint_tables"_a, "pair"_a, "low"_a.none(), "high"_a.none(), "columns"_a.none(),
            "most"_a);
