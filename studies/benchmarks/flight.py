@@ -1,6 +1,6 @@
 """Flights through forests: times of plans and of flights, instants in contact, and replanning at 1 kHz.
 
-    python -m studies.benchmarks.flight [--worlds 100] [--instants 1000000] [--seconds 60] [--words 16000000]
+    python -m studies.benchmarks.flight [--worlds 100] [--instants 1000000] [--seconds 60] [--words 16000000] [--kind 3]
 
 Distances and derivatives are computed here, in NumPy, from the sampled positions of the polynomials alone.
 """
@@ -17,6 +17,7 @@ from evenroad.flight import FlightWorld
 
 SPEED, ACCELERATION, RADIUS, TOP = 6.0, 8.0, 0.25, (0.5, 3.5)
 START, GOAL = er.State((0, 0, 2)), er.State((18, 0, 2))
+KINDS = ((46, (0.1, 0.2)), (145, (0.1, 0.2)), (300, (0.1, 0.2)), (300, (0.2, 0.3)))
 STEP = 1e-4
 """Step of finite differences [s]: at 1e-4 s they are exact to 1e-7 for parabolas of these speeds."""
 
@@ -64,8 +65,8 @@ def beyond(flight, times):
     )
 
 
-def plans(worlds, instants, words):
-    for trees, radii in ((46, (0.1, 0.2)), (145, (0.1, 0.2)), (300, (0.1, 0.2)), (300, (0.2, 0.3))):
+def plans(worlds, instants, words, kinds):
+    for trees, radii in kinds:
         took, shares, gaps, failed, contacts, faults, sampled, least = [], [], [], 0, 0, 0, 0, np.inf
         for seed in range(worlds):
             rows = forest(seed, trees, radii)
@@ -147,10 +148,11 @@ def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     options.add_argument("--worlds", type=int, default=100)
     options.add_argument("--instants", type=int, default=1_000_000, help="of all flights of a kind of forest")
+    options.add_argument("--kind", type=int, choices=range(len(KINDS)), help="of forests; default: all")
     options.add_argument("--words", type=int, default=16_000_000, help="size of the lattice of lower bounds")
     options.add_argument("--seconds", type=float, default=60.0, help="of simulated replanning, 0 for none")
     given = options.parse_args()
-    plans(given.worlds, given.instants, given.words)
+    plans(given.worlds, given.instants, given.words, KINDS if given.kind is None else [KINDS[given.kind]])
     if given.seconds > 0.0:
         replanning(0, given.seconds)
 

@@ -1,6 +1,6 @@
 """Even sets in state space: roadmaps of states in motion, by PRM and FMT*, in forests, slots and rooms.
 
-    python -m studies.benchmarks.flight_sets [--worlds 100] [--out rows.csv]
+    python -m studies.benchmarks.flight_sets --out rows.csv [--worlds 10] [--parts 0 1 2]
 
 Sets of N points in four dimensions are states (x, y and their velocities) of a ball of 0.25 m that flies in a plane of
 10 m by 10 m, at most 2 m/s fast and with 4 m/s^2.  PRM joins each state to the k of least time after it; FMT* searches
@@ -161,27 +161,31 @@ def tables(rows):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    options.add_argument("--worlds", type=int, default=100, help="of each kind")
-    options.add_argument("--out", type=Path, help="file that a row is written to for each world and set")
+    options.add_argument("--worlds", type=int, default=10, help="of each kind in each part")
+    options.add_argument("--parts", type=int, nargs="*", default=range(PARTS), help="those of ten that are run now")
+    options.add_argument("--out", type=Path, required=True, help="file of a row for each world and set; it grows")
     given = options.parse_args()
-    space, rows = world("forest", 0).space, []
-    for part in range(PARTS):
+    space = world("forest", 0).space
+    for part in given.parts:
         sets = {(s, n): States(s, n, part, space) for s in SAMPLERS for n in SIZES}
         for kind in KINDS:
             seed, found = 10_000 * part, 0
-            while found < given.worlds // PARTS:
+            while found < given.worlds:
                 seed += 1
                 here = world(kind, seed)
                 if not er.plan(here, START, GOAL, seconds=0.5):
                     continue
                 found += 1
-                for (sampler, n), states in sets.items():
-                    prm, fmt = states.flights(here)
-                    rows.append((kind, sampler, n, seed, prm, fmt))
-                    if given.out is not None:
-                        with given.out.open("a", newline="") as file:
-                            csv.writer(file).writerow(rows[-1])
-        tables(rows)
+                with given.out.open("a", newline="") as file:
+                    for (sampler, n), states in sets.items():
+                        csv.writer(file).writerow((kind, sampler, n, seed, *states.flights(here)))
+    with given.out.open(newline="") as file:
+        tables(
+            [
+                (kind, sampler, int(n), int(seed), float(prm), float(fmt))
+                for kind, sampler, n, seed, prm, fmt in csv.reader(file)
+            ]
+        )
 
 
 if __name__ == "__main__":
