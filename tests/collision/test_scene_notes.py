@@ -94,6 +94,12 @@ def test_a_plan_hands_on_the_note_about_its_scene(robot, tmp_path):
     assert er.plan(world, [0.0, 0.0], [0.5, 0.5]).notes == (note,)
 
 
+def test_boxes_of_arrays_have_the_notes_of_boxes(robot):
+    for size, xyz in (([(1.0, 2.0, 1.0)], [(300.0, 0.0, 0.0)]), ([(2000.0, 2000.0, 60.0)], [(900.0, 0.0, -30.5)])):
+        (note,) = er.plan(er.Scene.of_boxes(size, xyz, names=("box1",)), [0.0, 0.0], [0.1, 0.1], robot=robot).notes
+        assert note == ArmWorld(robot, er.Scene([Obstacle.of("box1", "box", size[0], xyz[0])])).notes[0]
+
+
 def ball(without=0, apart=()):
     """A ball of 1280 triangles around (0.5, 0, 0.5); without the first ones, and with corners that come apart there."""
     made = trimesh.creation.icosphere(subdivisions=3, radius=0.2)

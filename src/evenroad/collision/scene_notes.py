@@ -11,7 +11,7 @@ from evenroad.geometry.mesh_shape import gap_notes
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Sphere
 from evenroad.loading.units import EXPECTED, UNLIKE
 from evenroad.robots.planes import DEPTH, SIDE
-from evenroad.scenes.obstacles import Changed, Rows
+from evenroad.scenes.obstacles import Changed
 from evenroad.scenes.scene import Scene
 
 _THICK = 10.0
@@ -23,9 +23,9 @@ _SPHERE, _CAPSULE = (list(PRIMITIVES).index(kind) for kind in (Sphere.kind, Caps
 def scene_notes(scene: Scene, reach: float) -> tuple[str, ...]:
     """Return notes about a scene for a robot of this reach [m]: what has an odd size, and meshes with gaps.
 
-    Obstacles of arrays and changed ones have none: they may be others for each plan, which would take a tenth longer.
+    Changed ones have none: their rows would be put together again for each change.
     """
-    if type(scene.table) in (Rows, Changed) or not scene.obstacles:
+    if type(scene.table) is Changed or not scene.obstacles:
         return ()
     limits = UNLIKE * reach, _THICK * reach, min(reach, 1.0) / UNLIKE
     if not scene.surfaces and native.are_usual(scene.rows, _PLANE, reach, *limits):
