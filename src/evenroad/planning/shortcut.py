@@ -19,9 +19,9 @@ from evenroad.world import World
 PAIRS = 32
 """Number of even pairs of positions on the path that a batch joins, beside the corners that it cuts."""
 MAX_BATCHES = 32
-PATIENCE = 4
+PATIENCE = 3
 """Number of batches without a gain after which the path counts as short."""
-WORTH_WHILE = 1e-3
+WORTH_WHILE = 2e-3
 """Least share of shortening that counts as a gain of a batch."""
 LEAST = 1e-4
 """Least gain of a single cut, as a share of the cost of the path: motions for less are not checked."""
