@@ -94,13 +94,15 @@ void slide_and_shorten(Path& path, const Guides& guides, const Sliding& sliding,
   for (std::size_t turn = 0; turn < MOST_ROUNDS && path.size() > 2 && little < sliding.in_a_row && is_work_left();
        turn++) {
     const double length = path.length();
+    const std::int64_t before = checks.counts.batches;
     for (std::size_t number = sliding.a_round * turn; number < sliding.a_round * (turn + 1); number++) {
       if (is_work_left()) slides.slide(1 + number % (path.size() - 2), number);
     }
     path.measure();
     for (std::size_t i = 0; i < PAIRS; i++) shortcuts.join_shares(guides.pairs[pair++ % guides.pairs.rows]);
     if (turn % PASSED_BY == PASSED_BY - 1) shortcuts.pass_by();
-    little = path.length() > length * (1.0 - LEAST_GAIN) ? little + 1 : 0;
+    const double least = LEAST_GAIN + sliding.of_a_batch * static_cast<double>(checks.counts.batches - before);
+    little = path.length() > length * (1.0 - least) ? little + 1 : 0;
   }
   shortcuts.shortcut_corners(MOST_SHORTCUTS);
 }

@@ -24,11 +24,13 @@ struct Guides {
 };
 
 /// How long waypoints slide.  They stop after about `most_batches` of sixteen checks.  A round has `a_round` slides,
-/// after which points are joined.  Rounds end when `in_a_row` of them gain little.
+/// after which points are joined.  Rounds end when `in_a_row` of them gain little: less than a share of the length, to
+/// which each batch of the round adds another one.
 struct Sliding {
   std::int64_t most_batches;
   std::size_t a_round = 12;
   int in_a_row = 4;
+  double of_a_batch = 0.0;
 };
 
 /// Make a path shorter by straight motions, each proved free before it is used.

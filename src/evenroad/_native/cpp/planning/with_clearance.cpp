@@ -9,9 +9,10 @@ namespace evenroad::planning {
 
 namespace {
 
-/// Each of the two smoothings is shorter than a full one, which saves half of the time for 0.2 % of the length.  The
-/// second one begins with the result of the first.
-Sliding first_time(std::int64_t most_batches) { return {most_batches, 8, 3}; }
+/// Each of the two smoothings is shorter than a full one, which saves half of the time for 0.2 % of the length.  Where
+/// the first one ends by what its batches gain, it saves a fifteenth of both for another 0.2 %.  The second one begins
+/// with the result of the first.
+Sliding first_time(std::int64_t most_batches) { return {most_batches, 8, 3, 2e-4}; }
 Sliding second_time(std::int64_t most_batches) { return {most_batches, 8, 2}; }
 
 /// Largest share by which a path that keeps away from obstacles may be longer.
