@@ -6,6 +6,7 @@ from dataclasses import asdict, replace
 from functools import reduce
 from operator import and_
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from evenroad._time_limit import within
 from evenroad.cli import interrupted
@@ -35,7 +36,9 @@ from evenroad.poses.pose_goal import as_axis, as_numbers, pose_goal_of
 from evenroad.roadmap import load_roadmap
 from evenroad.robots.kinematics import held_values
 from evenroad.scenes.scene_file import find_scene, load_scene
-from evenroad.trajectory.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from evenroad.trajectory.trajectory import Trajectory
 
 
 def plan_arm(plan: PlanArm) -> int:
