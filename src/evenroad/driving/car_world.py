@@ -32,7 +32,7 @@ SLICES = 144
 _MOST_BOXES = 1_000_000
 """Largest number of boxes that such a proof goes to: some tenths of a second."""
 _MOST_DRIVEN = 30_000_000
-"""The same from start and from goal, of a car that does not reverse: at most a second."""
+"""The same from start and from goal, of a car that does not reverse: about a second."""
 _THIRD = 1.0 / 3.0
 """Share of a footprint at either end in which a contact is at a corner or a side."""
 

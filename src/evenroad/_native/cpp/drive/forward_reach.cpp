@@ -131,7 +131,7 @@ Apart ForwardReach::find(const Pose& start, const Pose& goal, std::int64_t most)
     return true;
   });
   // A reference point outside of the footprint may leave the map.
-  const double boxes = static_cast<double>(count_) * static_cast<double>(rows_) * static_cast<double>(columns_);
+  const double boxes = static_cast<double>(count_) * static_cast<double>(rows_) * static_cast<double>(64 * words_);
   if (!is_inside || boxes > MOST_SQUARES) return Apart::UNKNOWN;
   std::array<Flood, 2> floods{Flood(*this, start, goal, false), Flood(*this, goal, start, true)};
   ClockWatch clock(64);
@@ -167,7 +167,10 @@ std::uint64_t ForwardReach::open_of(const Word& word, std::uint64_t bits) {
 }
 
 const std::vector<ForwardReach::Span>& ForwardReach::spans_from(std::int64_t slice) {
-  if (spans_[slice].empty()) spans_[slice] = make_spans(slice, false);
+  if (spans_[slice].empty()) {
+    look_at_clock();
+    spans_[slice] = make_spans(slice, false);
+  }
   return spans_[slice];
 }
 
