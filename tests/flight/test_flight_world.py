@@ -214,3 +214,38 @@ def test_what_reaches_far_beyond_the_bounds_is_rounded_to_the_safe_side():
         free = world.valid(np.column_stack([at, np.zeros((2000, 3))]))
         assert not free[gap < 0].any()
         assert world.valid((*(turn @ np.array((0.2501, 0, 0))).astype(float), 0, 0, 0))
+
+
+@pytest.mark.parametrize("is_wall", [True, False])
+def test_a_dive_is_free_where_its_lowest_instant_keeps_away(is_wall):
+    rng = np.random.default_rng(12)
+    wall = er.Scene([er.Box((40.0, 1.0, 4.0), xyz=(0, -0.5, 0))])
+    radius = 0.2
+    low = -5.0 if is_wall else radius
+    world = FlightWorld(
+        wall if is_wall else er.Scene(),
+        radius,
+        speed=3.0,
+        acceleration=4.0,
+        bounds=[(-20, 20), (low, 5), (-1, 1)],
+    )
+    down, up, lowest = rng.uniform(0.2, 3, 1000), rng.uniform(0.2, 3, 1000), radius + rng.uniform(-0.05, 0.05, 1000)
+    time, flat = (down + up) / 4.0, np.zeros(1000)
+    a = np.column_stack([-1.5 * time, lowest + down**2 / 8, flat, flat + 3, -down, flat])
+    b = np.column_stack([1.5 * time, lowest + up**2 / 8, flat, flat + 3, up, flat])
+    free = world.motion_valid(a, b)
+    assert not free[lowest < radius - 1e-8].any()
+    assert free[lowest > radius + 3e-3].all()
+
+
+def test_no_ball_is_free_that_touches_a_lone_triangle():
+    rng = np.random.default_rng(13)
+    for _ in range(10):
+        corners = rng.uniform(-1, 1, (3, 3))
+        world = world_of(er.Scene([er.Mesh((corners, np.array([(0, 1, 2)])))]), 0.2)
+        shares = rng.dirichlet((0.4, 0.4, 0.4), 4000)
+        at = rng.uniform(-1.5, 1.5, (1000, 3)) * (1, 1, 0.6)
+        gap = np.min(np.linalg.norm(at[:, np.newaxis] - shares @ corners, axis=2), axis=1) - 0.2
+        free = world.valid(np.column_stack([at, np.zeros((1000, 3))]))
+        assert not free[gap < 0.0].any()
+        assert free[gap > 0.15].all()
