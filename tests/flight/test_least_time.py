@@ -138,6 +138,15 @@ def test_the_bound_sees_a_slalom_and_what_is_closed_takes_as_long_as_can_be_said
     assert closed.airspace.least_time(result.start, result.goal, 12.0, 2_000_000) == 12.0
 
 
+@pytest.mark.parametrize("acceleration", [50.0, 1e3, 1e6])
+def test_a_straight_flight_is_not_beaten_however_soon_it_is_at_full_speed(acceleration):
+    beside = er.Scene([er.Box((0.5, 0.5, 9), xyz=(5, 3, 2))])
+    bounds = [(-1, 11), (-2, 2), (1, 3)]
+    world = FlightWorld(beside, speed=1.0, acceleration=acceleration, bounds=bounds)
+    start, goal = np.array(er.State((0, 0, 2))), np.array([er.State((10, 0, 2))])
+    assert world.least_length(start, goal) == pytest.approx(10.0 + 1.0 / acceleration)
+
+
 def test_the_bound_of_several_goals_is_that_of_the_nearest_and_movers_are_left_out():
     cart = er.Scene([er.Box((0.5, 20, 6), xyz=(9, 0, 2), name="cart")])
     limits = {"speed": 6.0, "acceleration": 8.0, "bounds": [(-1, 19), (-9, 9), (0.5, 3.5)]}

@@ -300,11 +300,13 @@ double least_time_among(const Airspace& airspace, const State& start, const Stat
     const LatticeAxis first = lattice(period, one), second = lattice(period, other);
     return static_cast<double>(first.cells / WORD + 1) * second.cells * first.steps() * second.steps();
   };
+  // So few periods are looked at that shorter ones would not reach the largest time.
+  const auto fits = [&](double period) {
+    return MOST_PERIODS * period >= most && words_of(period) <= static_cast<double>(words);
+  };
   double period = 0.5 * direct;
-  if (direct >= most || !(words_of(period) <= static_cast<double>(words))) return std::min(direct, most);
-  for (int finer = 0; finer < MOST_PERIODS && words_of(period * FINER) <= static_cast<double>(words); finer++) {
-    period *= FINER;
-  }
+  if (direct >= most || !fits(period)) return std::min(direct, most);
+  while (fits(period * FINER)) period *= FINER;
   const LatticeAxis first = lattice(period, one), second = lattice(period, other);
   Reachable reachable(first, second, BlockedCells(airspace, first, second));
   // Before it begins, a flight is as if it had kept its velocity.
@@ -316,7 +318,7 @@ double least_time_among(const Airspace& airspace, const State& start, const Stat
   const auto [cell, on] = begin(first);
   const auto [row, up] = begin(second);
   if (!reachable.add(cell, row, on, up)) return direct;
-  for (int number = 0; number < MOST_PERIODS && number * period < most; number++) {
+  for (int number = 0; number * period < most; number++) {
     for (int part = 0; part < PARTS; part++) {
       const double time = period * (number + static_cast<double>(part) / PARTS);
       if (time <= direct - period / PARTS) continue;
