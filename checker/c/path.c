@@ -71,8 +71,11 @@ static Column* columns_of(const Certificate* certificate, char* line, size_t* co
 static double* rows_of(const Certificate* certificate, const char* path, size_t* count, double** times) {
   File file = read_file(path);
   char *text = copied((const char*)file.data, file.size), *line = next_part(&text, "\r\n");
+  if (memchr(file.data, 0, file.size)) fail(BAD_INPUT, "%s is no table", path);
+  while (line && !*line) line = next_part(&text, "\r\n");
+  if (!line) fail(BAD_INPUT, "%s is no table", path);
   size_t joints = certificate->joint_count, column_count = 0, lines = 2;
-  for (const char* each = text; each && *each; ++each) lines += *each == '\n';
+  for (const char* each = text; each && *each; ++each) lines += *each == '\n' || *each == '\r';
   Column* columns = columns_of(certificate, line, &column_count, path);
   double* rows = take(lines * joints, sizeof *rows);
   *times = take(lines, sizeof **times);
@@ -133,10 +136,25 @@ static double strays(const Certificate* certificate) {
   return most / FINE / FINE / 8;
 }
 
-/* Tell whether rows, and the straight ways between them, follow the curves within their tolerance. */
+/* How far a spline strays from the straight ways between its control points: an eighth of their second difference. */
+static double spline_strays(const double* rows, size_t count, size_t joints) {
+  double most = 0;
+  for (size_t i = 1; i + 1 < count; ++i) {
+    double square = 0;
+    for (size_t k = i * joints; k < (i + 1) * joints; ++k) {
+      square += pow(rows[k + joints] - 2 * rows[k] + rows[k - joints], 2);
+    }
+    most = fmax(most, sqrt(square) / 8);
+  }
+  return most;
+}
+
+/* Tell whether rows, and the straight ways between them, follow the curves within their tolerance; and, if there are
+   limits, the spline of which they hold. */
 static bool are_near(const Certificate* certificate, const double* rows, size_t count) {
   size_t joints = certificate->joint_count, at = 0, last = certificate->motions * FINE;
   double near = certificate->tolerance - strays(certificate);
+  if (certificate->limit_count) near -= spline_strays(rows, count, joints);
   double* places = take(3 * joints, sizeof *places); /* the ends of the part that a row is near, and the next one */
   for (size_t k = 0; k < 3; ++k) find_place(certificate, k, places + k * joints);
   for (size_t i = 0; i < count; ++i) {
@@ -185,6 +203,7 @@ void require_same_path(const Certificate* certificate, const char* path) {
     if (!are_near(certificate, rows, count)) fail(REFUSED, "%s leaves the curves of the certificate", path);
     return;
   }
+  if (certificate->limit_count) fail(REFUSED, "limits of a spline near the waypoints, and no tolerance");
   if (!is_straight(certificate)) fail(REFUSED, "it proves curves, which no table of waypoints gives");
   bool same = count == certificate->motions + 1;
   for (size_t i = 0; same && i < count * joints; ++i) {

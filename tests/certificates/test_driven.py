@@ -282,3 +282,15 @@ def test_tables_without_times_and_lines_of_no_joint_are_refused(timed):
         b"limit 1",
     ):
         assert judged(timed, data.replace(line, other))[0] == 1
+
+
+def test_limits_are_named_where_the_tolerance_leaves_room_for_their_spline(reach, tmp_path):
+    states = reach.positions
+    strays = np.linalg.norm(np.diff(states, 2, axis=0), axis=1).max() / 8.0
+    assert 0.0 < 2.0 * strays < TOLERANCE
+    certify(box_reach().world, box_reach().path, Sources.named("ur5", "box-reach"), tmp_path / "reach.cert",
+            trajectory=reach)  # fmt: skip
+    certificate = read_certificate((tmp_path / "reach.cert").read_bytes())
+    assert len(certificate.limits) == 6
+    far = _distances(driven(states, states, TOLERANCE, strays), states).max()
+    assert far < TOLERANCE - strays

@@ -20,7 +20,7 @@ from evenroad._shared import once_property
 from evenroad.certificates.claim import Claim, Claimed, Links, claim_of
 from evenroad.certificates.curves import TOLERANCES, Curves, driven, straight
 from evenroad.certificates.kept import claimed_keeps, rows_of
-from evenroad.certificates.limits import kept_limits
+from evenroad.certificates.limits import kept_limits, strays_of
 from evenroad.certificates.plain import claimed_scene
 from evenroad.certificates.robot_files import ReadRobot, read_robot_files
 from evenroad.certificates.sources import Files, scene_files
@@ -54,7 +54,8 @@ def certify(
     """Write the certificate of a path, (p, dim), that a world of these files calls free.
 
     With a `trajectory` along the path it is about the straight motions between its states, which are driven, and names
-    the limits that these keep; with `states`, (n, dim), about the motions between these.
+    the limits that these keep, if the tolerance leaves room for the spline of which limits hold; with `states`,
+    (n, dim), about the motions between these.
 
     Raises NotAvailable for what no certificate speaks of; InvalidValue if the path touches something, or comes too near
     to it; Exhausted if the proof would be too long.
@@ -72,7 +73,9 @@ def certify(
         curves = straight(continued(path, world.space, path[0]))
         answers, directions = answers_of(claim, curves)
     else:
-        curves, answers, directions = _near(claim, states, continued(path, world.space, path[0]))
+        strays = strays_of(states) if limits else 0.0
+        curves, answers, directions = _near(claim, states, continued(path, world.space, path[0]), strays)
+        limits = limits if _is_wide(curves.tolerance, strays) else {}
     lines = [keep.line for keep in claimed.beside.keeps]
     joints = claimed.beside.joints
     lines += [f"limit {fast!r} {hard!r} {name}" for name, (fast, hard) in limits.items() if name in joints]
@@ -154,15 +157,25 @@ def _claimed_by(read: ReadRobot, sources: Sources, world: ArmWorld, keeps: Seque
     return OfFiles((robot, scene), read.links(claimed), claims, claimed)
 
 
-def _near(claim: Claim, states: Floats, path: Floats) -> tuple[Curves, npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
+def _near(
+    claim: Claim, states: Floats, path: Floats, strays: float
+) -> tuple[Curves, npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
     """Return curves along states of a path, and their answers: nearer ones where the first are not proved free."""
+
+    def near(tolerance: float) -> Curves:
+        return driven(states, path, tolerance, strays if _is_wide(tolerance, strays) else 0.0)
+
     *others, finest = TOLERANCES
-    for tolerance in others:
-        curves = driven(states, path, tolerance)
+    for curves in map(near, others):
         with suppress(InvalidValue):
             return curves, *answers_of(claim, curves)
-    curves = driven(states, path, finest)
+    curves = near(finest)
     return curves, *answers_of(claim, curves)
+
+
+def _is_wide(tolerance: float, strays: float) -> bool:
+    """Return whether a tolerance is enough for what strays from motions between states, and for curves along these."""
+    return 2.0 * strays <= tolerance
 
 
 def answers_of(claim: Claim, curves: Curves) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32]]:

@@ -41,12 +41,14 @@ Nearer ones are many: a way between two states of a corner is straight, and some
 """
 
 
-def driven(states: Floats, waypoints: Floats, tolerance: float) -> Curves:
+def driven(states: Floats, waypoints: Floats, tolerance: float, strays: float = 0.0) -> Curves:
     """Return parabolas, one after the other, along straight motions between states, (n, dim), at most so far away.
+
+    They are nearer by what the robot `strays` from these motions [rad or m].
 
     Each is the longest that fits: lines become one, an arc a few.  Their control points are within the range of each
     joint over states and waypoints, (p, dim), which keep its limits.
     """
     states = np.ascontiguousarray(states, dtype=float)
     ranges = np.concatenate([states, waypoints])
-    return Curves(parabolas(states, ranges.min(axis=0), ranges.max(axis=0), tolerance), 2, tolerance)
+    return Curves(parabolas(states, ranges.min(axis=0), ranges.max(axis=0), tolerance - strays), 2, tolerance)

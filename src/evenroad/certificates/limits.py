@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from evenroad._arrays import Floats
 from evenroad.trajectory.trajectory import Trajectory
+
+
+def strays_of(states: Floats) -> float:
+    """Return how far the spline of which limits hold is from the straight motions between states at most."""
+    return float(np.linalg.norm(np.diff(states, 2, axis=0), axis=1).max(initial=0.0)) / 8.0
 
 
 def kept_limits(trajectory: Trajectory) -> dict[str, tuple[float, float]]:
