@@ -84,3 +84,19 @@ def test_links_of_a_robot_without_joints_are_fixed_to_each_other(radius, status,
     pair = decide_pair(arm(tmp_path, radius, (0.5,), kind="fixed"), ("base", "l0"), "disabled", 5.0)
     # The ball is 0.5 m from that of the root, whose radius is 0.2 m.
     assert (pair.status, pair.joints, pair.proof) == (status, (), None)
+
+
+def test_fixed_links_whose_proof_is_too_long_are_undecided(tmp_path, monkeypatch):
+    arm(tmp_path, 0.2, (0.5,), kind="fixed")
+    # Two balls each, crosswise: no plane is between all of them.
+    text = (tmp_path / "arm.urdf").read_text()
+    cross = "<collision><origin xyz='{} {} 0'/><geometry><sphere radius='0.1'/></geometry></collision>"
+    for link, balls in (("base", ((1, 0), (-1, 0))), ("l0", ((-0.5, 1), (-0.5, -1)))):
+        start = text.index(f"<link name='{link}'>") + len(f"<link name='{link}'>")
+        end = text.index("</link>", start)
+        text = text[:start] + "".join(cross.format(*ball) for ball in balls) + text[end:]
+    (tmp_path / "arm.urdf").write_text(text)
+    links = Links(read_robot(RobotFile(tmp_path / "arm.urdf")))
+    assert decide_pair(links, ("base", "l0"), "disabled", 5.0).status == "never"
+    monkeypatch.setattr("evenroad.certificates.link_pairs._MOST", 1)
+    assert decide_pair(links, ("base", "l0"), "disabled", 5.0).status == "undecided"

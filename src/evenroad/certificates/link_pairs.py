@@ -148,17 +148,15 @@ def decide_pair(of: Links, links: tuple[str, str], reason: str, seconds: float) 
     bodies = tuple(bodies_of((shape for link in links for shape in of.shapes[link]), of.tree))
     claim = WorldClaim(of.tree, bodies, ((Owner(links[0]), Owner(links[1]), 0.0),), "shapes of the file")
     alone = claim.one_by_one(claim.pairs)
-    if nested(claim, middle) is not None or (not joints and in_contact(alone, np.append(middle, 0.0))):
+    if nested(claim, middle) is not None:
         return pair("touches", middle, 0.0)
-    if not joints:
-        return LinkPair(links, reason, "never", (), {}, None)
     if of.endless & set(columns):
         return nowhere
     halved = _halved(of, bodies, columns)
     low, high = np.ascontiguousarray(of.limits.T)
     try:
         with until(Deadline.after(seconds)):
-            contact = _contact(of, links, alone, columns)
+            contact = _contact(of, links, alone, columns) if columns else None
             if contact is not None:
                 return pair("touches", contact, 0.0)
             if len(columns) > MOST_JOINTS:
@@ -170,7 +168,7 @@ def decide_pair(of: Links, links: tuple[str, str], reason: str, seconds: float) 
         return nowhere
     touch = answers.touch
     if touch.pair < 0:
-        return LinkPair(links, reason, "never", joints, {}, None, Proof(halved, answers))
+        return LinkPair(links, reason, "never", joints, {}, None, Proof(halved, answers) if columns else None)
     near = max(touch.most, 0.0)
     return pair("touches" if near <= IN_CONTACT else "undecided", _middle(of.limits, halved, touch.share), near)
 
@@ -201,7 +199,7 @@ def _halved(of: Links, bodies: Sequence[Body], columns: list[int]) -> Ints:
     """
     rows = _lever_rows(of, bodies)
     half, found = 0.5 * np.ptp(of.limits, axis=1), []
-    for _ in range(_HALVINGS):
+    for _ in range(_HALVINGS if columns else 0):
         strays = []
         for column in columns:
             narrower = half.copy()
@@ -209,7 +207,7 @@ def _halved(of: Links, bodies: Sequence[Body], columns: list[int]) -> Ints:
             strays.append(sum(_stray(chain, narrower) for chain in rows))
         found.append(columns[int(np.argmin(strays))])
         half[found[-1]] *= 0.5
-    return np.array(found)
+    return np.array(found, dtype=np.int64)
 
 
 def _stray(chain: Sequence[tuple[int, float, bool, float]], half: Floats) -> float:
