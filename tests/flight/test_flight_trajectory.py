@@ -85,7 +85,7 @@ def test_a_saved_flight_is_loaded_as_it_was_and_a_damaged_one_refused(tmp_path):
     FLIGHT.save(tmp_path / "go.json")
     again = er.load(tmp_path / "go.json")
     np.testing.assert_array_equal(again.pieces, FLIGHT.pieces)
-    assert again.world is None
+    assert (again.world, again.proof) == (None, "unchecked")
     record = json.loads((tmp_path / "go.json").read_text())
     for change in (
         {"pieces": []},
@@ -94,6 +94,7 @@ def test_a_saved_flight_is_loaded_as_it_was_and_a_damaged_one_refused(tmp_path):
         {"pieces": [{**record["pieces"][0], "duration": -1}]},
         {"pieces": [{**record["pieces"][0], "duration": float("nan")}]},
         {"pieces": record["pieces"][:1] + record["pieces"][2:]},
+        {"pieces": [{**record["pieces"][0], "duration": 100.0, "x": [0, -1e307, 1e306]}, *record["pieces"][1:]]},
     ):
         (tmp_path / "bad.json").write_text(json.dumps({**record, **change}))
         with pytest.raises(BrokenFile, match=r"bad\.json is a damaged flight"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -52,7 +52,7 @@ class FlightTrajectory:
     step : float
         Largest time between two states [s].
     proof : str
-        Proof of the whole motion: ``certified``.
+        Proof of the whole motion: ``certified``, or ``unchecked`` of one from a file, which has no world.
     world : World or None
         World that it was made in.
 
@@ -181,20 +181,25 @@ def flight_trajectory(world: World | None, pieces: Floats, *, step: float = STEP
 
 
 def flight_of(record: Json, path: str | os.PathLike[str]) -> FlightTrajectory:
-    """Return the flight of a JSON record of a file, without its world; BrokenFile if its pieces do not join."""
+    """Return the flight of a JSON record of a file, unchecked and without its world; BrokenFile if it is damaged."""
     try:
-        pieces = np.array([_piece_of(each) for each in record["pieces"]])
-        if not len(pieces) or not np.isfinite(pieces).all() or pieces[:, 0].min() < 0.0:
-            raise ValueError("its pieces must be finite numbers, with durations of at least 0 s")
-        flight = flight_trajectory(None, pieces)
-        t = pieces[:-1, :1]
-        reached = pieces[:-1, 1:7] + t * pieces[:-1, 4:10]
-        reached[:, :3] += 0.5 * t * t * pieces[:-1, 7:]
-        if np.abs(reached - pieces[1:, 1:7]).max(initial=0.0) > _JOINED * (1.0 + np.abs(pieces).max()):
-            raise ValueError("its pieces do not join")
+        with np.errstate(over="ignore", invalid="ignore"):
+            return _joined(np.array([_piece_of(each) for each in record["pieces"]]))
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise BrokenFile(f"{path} is a damaged flight: {error}") from error
-    return flight
+
+
+def _joined(pieces: Floats) -> FlightTrajectory:
+    """Return the flight of pieces, (k, 10); ValueError if they do not join."""
+    if not len(pieces) or not np.isfinite(pieces).all() or pieces[:, 0].min() < 0.0:
+        raise ValueError("its pieces must be finite numbers, with durations of at least 0 s")
+    t = pieces[:-1, :1]
+    reached = pieces[:-1, 1:7] + t * pieces[:-1, 4:10]
+    reached[:, :3] += 0.5 * t * t * pieces[:-1, 7:]
+    jump = np.abs(reached - pieces[1:, 1:7]).max(initial=0.0)
+    if not jump <= _JOINED * (1.0 + np.abs(pieces).max()):
+        raise ValueError("its pieces do not join")
+    return replace(flight_trajectory(None, pieces), proof="unchecked")
 
 
 def _piece_of(each: Json) -> list[float]:
