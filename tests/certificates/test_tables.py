@@ -84,3 +84,7 @@ def test_limits_of_a_spline_that_has_just_room_are_accepted(tmp_path, capsys):
 )  # fmt: skip
 def test_both_read_the_same_tables(table, code, tmp_path, capsys):
     assert Gantry(tmp_path).judged(table, capsys) == (code, code)
+
+
+def test_numbers_of_other_scripts_are_none_for_both(tmp_path, capsys):
+    assert Gantry(tmp_path, "tolerance 0.00\u0665").judged(TABLE, capsys) == (1, 1)

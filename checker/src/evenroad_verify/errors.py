@@ -14,7 +14,7 @@ Ints: TypeAlias = npt.NDArray[np.int64]
 Answers: TypeAlias = npt.NDArray[np.uint8]
 Pose: TypeAlias = tuple[Floats, Floats]
 """Rotation, (3, 3), and translation, (3,)."""
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 
 
 class Refused(Exception):
