@@ -142,10 +142,10 @@ def test_both_commands_print_the_same(proved, capsys):
 
 def test_a_robot_whose_joints_go_farther_needs_another_certificate(proved, many):
     arm, data, _ = proved
-    for change in ("limit", "radius"):
+    for change in ("limit", "reversed", "radius"):
         other = RandomArm(arm.folder, 900, 3, 0.1)
         vars(other).update({**vars(arm), "file": other.file, change: None})
-        other.limit = [1.5 * each for each in arm.limit] if change == "limit" else arm.limit
+        other.limit = [{"limit": 1.5, "reversed": -1.0, "radius": 1.0}[change] * each for each in arm.limit]
         other.radius = arm.radius + (arm.distances(20_000).min() + 0.01 if change == "radius" else 0.0)
         other.file.write_text(other.text())
         inputs = other.inputs()

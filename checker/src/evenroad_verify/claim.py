@@ -195,7 +195,9 @@ def ranges_of(inputs: Inputs, frames: Frames, certificate: Certificate) -> Float
         joint, factor, column = frames.joints[k], float(frames.factor[k]), int(frames.column[k])
         if joint.upper - joint.lower <= ENDLESS and factor != 0.0:
             ends = (np.array([joint.lower, joint.upper]) - frames.offset[k]) / factor
-            low, high = max(ranges[column, 0], ends.min()), min(ranges[column, 1], ends.max())
+            # Limits the wrong way round leave a joint no range.
+            least, most = ends if joint.leader == joint.name else np.sort(ends)
+            low, high = max(ranges[column, 0], least), min(ranges[column, 1], most)
             if joint.leader == joint.name or high - low > LEAST:
                 ranges[column] = low, high
     ranges += (-BEYOND, BEYOND)
