@@ -66,7 +66,7 @@ def in_time(call, seconds=SECONDS):
         (None, {}),
         (None, {"smooth": "quick", "certified": True}),
         (er.RRTConnect(improve=True), {}),
-        (er.PRM(er.draw("sobol", 512, 6)), {}),
+        (er.PRM(er.draw("sobol", 8192, 6)), {}),
         (GrowingPRM(), {}),
     ],
 )

@@ -7,7 +7,6 @@ from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.distance import cdist
 
 from evenroad._arrays import Floats
 from evenroad.collision.arm_world import ArmWorld
@@ -78,6 +77,9 @@ def distance_of(body: Shape, robot: Robot, q: Floats, links: Collection[str]) ->
             radii.append(np.full(_SAMPLES, capsule.radius))
     sampled = np.concatenate(points)
     if isinstance(body, PointCloud | Mesh):
+        # Imported late: it loads half of SciPy, for a fifth of a second, and few tasks grip a mesh.
+        from scipy.spatial.distance import cdist
+
         corners = body.points if isinstance(body, PointCloud) else body.triangles.vertices
         away = cdist(sampled, body.pose.apply(corners)).min(axis=1)
     else:

@@ -24,7 +24,7 @@ constexpr int BESIDE[] = {0, (3 * FULL + 7) / 8, (FULL + 1) / 2, (3 * FULL + 7) 
 /// Parts of the last period.
 constexpr int PARTS = 16;
 /// Periods are shortened by this factor until the lattice is large enough; its cells are larger by a rounding.
-constexpr double FINER = 0.9, WIDER = 1.0 + 1e-9;
+constexpr double FINER = 0.9, A_HAIR_MORE = 1.0 + 1e-9;
 /// Largest number of corners that are looked at for all bodies, and of periods.
 constexpr std::size_t MOST_CORNERS = 20'000'000;
 constexpr int MOST_PERIODS = 1000;
@@ -64,7 +64,7 @@ struct Plane {
 LatticeAxis lattice_axis(const Airspace& airspace, const State& start, const State& goal, double most, double period,
                          std::size_t axis) {
   const double speed = airspace.limits().speed[axis], acceleration = airspace.limits().acceleration[axis];
-  const double cell = acceleration * period * period / FULL * WIDER;
+  const double cell = acceleration * period * period / FULL * A_HAIR_MORE;
   const double from = start.position[axis], to = goal.position[axis], middle = 0.5 * (from + to);
   // Farther away there is no time to come back.
   const double low = std::max(airspace.bounds().low[axis], middle - 0.5 * speed * most) - cell;
