@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from scipy.interpolate import BSpline
 import evenroad as er
 from evenroad.certificates.certify import certify
 from evenroad.certificates.curves import driven
+from evenroad.certificates.limits import kept_limits
 from evenroad.certificates.sources import Sources
 from evenroad.cli import main
 from evenroad.errors import InvalidValue
@@ -294,3 +296,10 @@ def test_limits_are_named_where_the_tolerance_leaves_room_for_their_spline(reach
     assert len(certificate.limits) == 6
     far = _distances(driven(states, states, TOLERANCE, strays), states).max()
     assert far < TOLERANCE - strays
+
+
+def test_no_limits_are_named_of_a_table_whose_steps_differ(reach):
+    assert len(kept_limits(reach)) == 6
+    times = reach.times.copy()
+    times[len(times) // 2 :] += 0.01
+    assert kept_limits(replace(reach, times=times)) == {}

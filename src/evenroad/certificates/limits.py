@@ -18,9 +18,11 @@ def kept_limits(trajectory: Trajectory) -> dict[str, tuple[float, float]]:
 
     They hold of the spline of degree 2 in time whose control points are the states, the first and last ones twice.
     """
-    if len(trajectory.times) < 2:
+    steps = np.diff(trajectory.times)
+    # A checker takes steps as equal up to 1e-6 of them.
+    if not len(steps) or not steps.max() <= (1.0 + 5e-7) * steps.min():
         return {}
-    step = float(np.diff(trajectory.times).min())
+    step = float(steps.min())
     velocity = np.diff(trajectory.positions[[0, *range(len(trajectory.times)), -1]], axis=0) / step
     fastest, hardest = np.abs(velocity).max(axis=0), np.abs(np.diff(velocity, axis=0)).max(axis=0) / step
     limits, found = trajectory.limits, {}
