@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad._time_limit import within
 from evenroad.flight import FlightWorld
 from tests.flight.oracle import distances
 
@@ -154,5 +155,8 @@ def test_the_bound_of_several_goals_is_that_of_the_nearest_and_movers_are_left_o
     world = FlightWorld(cart, **limits)
     assert world.least_length(start, goals) == world.least_length(start, goals[1:]) == 2 * np.sqrt(4 / 8)
     assert world.least_length(start, goals[:1]) > 2 * 3.75
+    far = np.array([er.State((18, y, 2)) for y in np.linspace(-9, 9, 300)])
+    with within(5.0):  # goals that are too far away take no time
+        assert world.least_length(start, np.concatenate([far, goals])) == 2 * np.sqrt(4 / 8)
     moving = FlightWorld(cart, velocities={"cart": (0, 0, 0)}, **limits)
     assert moving.least_length(start, goals[:1]) == 3.75
