@@ -6,7 +6,7 @@
 
 The family ``apart`` has start and goal at opposite faces: slots, forests, rooms with doors, caves, bars.  ``fair`` is
 the periodic one: balls and boxes.  ``anywhere`` has start and goal anywhere, among blocks that bound all axes and in
-corridors, and ``arms`` has three arms among boxes.
+corridors, and ``arms`` has arms among boxes: three that ship, and a Panda where the extra [robots] is installed.
 
 Roadmaps are ``k symmetrised``; start and goal are joined by the rule alone ("rule"), and to the 100 nearest milestones
 as well, as a plan does ("plan").  All candidates see the same worlds.  A difference is from `--beside`, in points,
@@ -43,7 +43,7 @@ Make = Callable[[int], Problem]
 
 
 FAMILIES = ("apart", "fair", "anywhere", "arms")
-ARM_JOINTS = sorted(d for _, d in anywhere.ARMS.values())
+ARM_JOINTS = sorted({d for _, d in anywhere.ARMS.values()})
 
 
 def problems(use: Use, d: int, family: str) -> Iterator[tuple[str, Make]]:
@@ -59,7 +59,9 @@ def problems(use: Use, d: int, family: str) -> Iterator[tuple[str, Make]]:
             yield kind.name.lower(), lambda i, k=kind, s=size: apart.make(use, k, d, s, i)
     else:
         for place in anywhere.Kind:
-            if (place in anywhere.ARMS) == (family == "arms") and (place, d) in anywhere.COUNTS:
+            if (place in anywhere.ARMS) != (family == "arms") or not anywhere.is_here(place):
+                continue
+            if (place, d) in anywhere.COUNTS:
                 size = anywhere.SIZES[use, place, d]
                 yield place.name.lower(), lambda i, k=place, s=size: anywhere.make(use, k, d, s, i)
 

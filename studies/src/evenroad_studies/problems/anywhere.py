@@ -17,6 +17,7 @@ import numpy as np
 
 from evenroad import ArmWorld, Box, Scene
 from evenroad._arrays import Floats
+from evenroad.errors import UnknownName
 from evenroad.robot import Robot, load_robot
 from evenroad.world import World
 from evenroad_studies.arms.robots import DATA
@@ -41,6 +42,7 @@ class Kind(IntEnum):
     UR5 = 3
     ARM7 = 4
     TWOARM = 5
+    PANDA = 6
 
 
 BLOCKS = (20, 40)
@@ -62,8 +64,9 @@ ARMS: Mapping[Kind, tuple[str | Path, int]] = {
     Kind.UR5: ("ur5", 6),
     Kind.ARM7: ("arm7", 7),
     Kind.TWOARM: (DATA / "twoarm.urdf", 8),
+    Kind.PANDA: ("panda", 7),
 }
-"""Kind -> the robot's file, and its number of joints."""
+"""Kind -> the robot's file, or name, and its number of joints; a Panda comes with the extra [robots]."""
 
 
 def blocks(beyond: float, use: Use, d: int, half: float, rng: np.random.Generator) -> World:
@@ -107,6 +110,16 @@ def clutter(kind: Kind, use: Use, d: int, half: float, rng: np.random.Generator)
         for i, (size, place) in enumerate(zip(extents.tolist(), (directions * away[:, None]).tolist(), strict=True))
     ]
     return ArmWorld(_robot(kind), Scene(boxes))
+
+
+def is_here(kind: Kind) -> bool:
+    """Return whether the robot of a kind is installed; other kinds have none."""
+    try:
+        if kind in ARMS:
+            _robot(kind)
+    except UnknownName:
+        return False
+    return True
 
 
 MAKERS: Mapping[Kind, Callable[[Use, int, float, np.random.Generator], World]] = {
