@@ -28,8 +28,8 @@ from evenroad.robots.kinematics import link_poses
 from evenroad.robots.robot import Robot
 
 GROUP = "arm"
-STEP = 0.02
-"""Largest step between two states of a motion that is checked [rad]; RoboPlan's own is 0.05."""
+STEP, OWN_STEP = 0.02, 0.05
+"""Largest steps between two states of a motion that is checked [rad]: here, and RoboPlan's default."""
 MOST_NODES = 100_000
 _CAPSULE = re.compile(
     r'<collision><origin xyz="([^"]*)"(?: rpy="([^"]*)")?/><geometry>'
@@ -89,11 +89,16 @@ def plan(problem: Problem, urdf: Path, seconds: float) -> Vector | None:
 
 def plans(problem: Problem, urdf: Path, seconds: float) -> Iterator[Vector | None]:
     """Yield shortened paths, (p, dim), or None: plans of the seeds 1, 2, 3 ... of so many seconds at most."""
-    scene, names = scene_of(problem, urdf), list(problem.robot.group)
+    yield from plans_in(scene_of(problem, urdf), problem, seconds)
+
+
+def plans_in(scene: Scene, problem: Problem, seconds: float, step: float = STEP) -> Iterator[Vector | None]:
+    """Yield the same in a scene that exists, with another step of checks [rad]."""
+    names = list(problem.robot.group)
     options, shorter = RRTOptions(), PathShortcuttingOptions()
     options.group_name, options.rrt_connect, options.max_nodes = GROUP, True, MOST_NODES
-    options.max_planning_time, options.collision_check_step_size = seconds, STEP
-    shorter.group_name, shorter.max_step_size = GROUP, STEP
+    options.max_planning_time, options.collision_check_step_size = seconds, step
+    shorter.group_name, shorter.max_step_size = GROUP, step
     start, goal = JointConfiguration(names, problem.start), JointConfiguration(names, problem.goal)
     for seed in itertools.count(1):
         planner = RRT(scene, options)

@@ -6,8 +6,9 @@
 
 OMPL asks evenroad's `CertifiedWorld`, so that every motion of its path is proved, too.  It asks through Python, one
 motion at a time, as it does for anybody who uses OMPL from Python.  RoboPlan asks coal, at states at most 0.02 rad
-apart, about the same bodies: a cylinder with a ball at each end for a capsule.  Each query is planned once by each,
-with a limit of `SECONDS`.  Times are processor time of one thread, from a robot and a scene to the smoothed path, as
+apart, about the same bodies: a cylinder with a ball at each end for a capsule.  It also plans as its users do: in a
+scene that it has read before, with its own step of 0.05 rad.  Each query is planned once by each, with a limit of
+`SECONDS`.  Times are processor time of one thread, from a robot and a scene to the smoothed path, as
 median / mean / 95 %.  Lengths are shares of those of `er.plan`, of the problems that both solve.  A path touches
 if `ArmWorld` says that one of its states, 0.001 rad apart, is not free.
 """
@@ -24,6 +25,7 @@ import numpy as np
 from ompl import geometric as og
 from ompl import util as ou
 from studies.benchmarks.arm_problems import REPORTING, Pool, Problem, Vector, arm_named, problems
+from studies.benchmarks.frozen import processor
 from studies.benchmarks.rows import parser_of
 
 import evenroad as er
@@ -72,6 +74,16 @@ def by_roboplan(problem: Problem) -> Row:
     return 1e3 * (time.thread_time() - begin), path
 
 
+def by_roboplan_in_its_scene(problem: Problem) -> Row:
+    """Plan with RoboPlan in a scene that is there, with its own step; the time begins with the query."""
+    from studies.benchmarks.roboplan_arm import OWN_STEP, plans_in, scene_of
+
+    scene = scene_of(problem, file_of(problem.robot))
+    begin = time.thread_time()
+    path = next(plans_in(scene, problem, SECONDS, OWN_STEP))
+    return 1e3 * (time.thread_time() - begin), path
+
+
 def touches(problem: Problem, path: Vector) -> bool:
     """Return whether a state of a path is not free."""
     world = ArmWorld(problem.robot, problem.scene)
@@ -94,7 +106,8 @@ def main() -> None:
     planners: dict[str, Callable[[Problem], Row]] = {"er.plan": ours, "OMPL's RRT-Connect, simplified": theirs}
     if options.roboplan:
         planners["RoboPlan's RRT-Connect, shortcuts"] = by_roboplan
-    print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
+        planners["the same, scene known, its own step"] = by_roboplan_in_its_scene
+    print(f"{processor()}; load average of the last minute: {os.getloadavg()[0]:.1f}")
     drawn = []
     for name in options.arms:
         every = list(problems(Pool(arm_named(name)), REPORTING[: options.count]))
