@@ -82,16 +82,18 @@ def test_a_callback_stops_the_other_processes_soon(tmp_path):
 
 
 def test_a_killed_process_leaves_the_finished_sets(tmp_path):
-    first = anneal_many(**SMALL, sets=1, folder=tmp_path, workers=1)
+    # So many steps that no set is finished before the first call back.
+    large = SMALL | {"steps": 30_000}
+    first = anneal_many(**large, sets=1, folder=tmp_path, workers=1)
     with pytest.raises(WorkerLost, match="call again to go on") as caught:
-        anneal_many(**SMALL, sets=3, workers=2, folder=tmp_path, family=None, callback=kill_a_child)
+        anneal_many(**large, sets=3, workers=2, folder=tmp_path, family=None, callback=kill_a_child)
     assert isinstance(caught.value, EvenroadError)
     assert isinstance(caught.value.__cause__, BrokenProcessPool)
     assert load_points(tmp_path / "set-0000.npz") == first[0]
     # It may have been killed while it wrote: what it wrote has no name of a set then.
     for file in tmp_path.glob("set-*.npz"):
         load_points(file)
-    assert len(anneal_many(**SMALL, sets=3, workers=1, folder=tmp_path)) == 3
+    assert len(anneal_many(**large, sets=3, workers=1, folder=tmp_path)) == 3
 
 
 def test_two_processes_make_the_sets_of_one_and_leave_ctrl_c_to_the_parent(tmp_path):
