@@ -150,6 +150,16 @@ inline FloatRows float_rows(nb::handle given, const char* name, std::size_t colu
   return rows.of_shape({rows.shape(0), columns});
 }
 
+/// The endpoints of many motions, in rows that have their own checks.
+template <class Rows>
+struct Endpoints {
+  Rows from, to;
+
+  Endpoints(nb::handle a, nb::handle b) : from(a, "a"), to(b, "b") {
+    require(from.count() == to.count(), "a and b must have as many rows");
+  }
+};
+
 /// Move memory to Python as a NumPy array of this shape.
 template <class T>
 nb::object as_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {

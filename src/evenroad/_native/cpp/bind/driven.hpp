@@ -28,14 +28,7 @@ class Poses {
   FloatRows array_;
 };
 
-/// Endpoints of motions.
-struct Pairs {
-  Poses from, to;
-
-  Pairs(nb::handle a, nb::handle b) : from(a, "a"), to(b, "b") {
-    require(from.count() == to.count(), "a and b must have as many rows");
-  }
-};
+using Pairs = Endpoints<Poses>;
 
 /// Rows of pieces: the side that each turns to, and its signed length, in units of that many map units.
 inline std::vector<drive::Piece> pieces_of(nb::handle given, double unit = 1.0) {

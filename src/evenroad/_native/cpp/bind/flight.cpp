@@ -41,14 +41,7 @@ class FlightStates {
   FloatRows array_;
 };
 
-/// FlightStates that motions begin and end with.
-struct Flights {
-  FlightStates from, to;
-
-  Flights(nb::handle a, nb::handle b) : from(a, "a"), to(b, "b") {
-    require(from.count() == to.count(), "a and b must have as many rows");
-  }
-};
+using Flights = Endpoints<FlightStates>;
 
 void append_state(OwnMatrix<double>& rows, const flight::State& state) {
   rows.append(std::array<double, 6>{state.position[0], state.position[1], state.position[2], state.velocity[0],
@@ -74,7 +67,7 @@ nb::object least_times(const flight::Limits& limits, nb::handle a, nb::handle b)
   return as_row(std::move(times));
 }
 
-/// FlightStates after shares of the motions.
+/// States after shares of the motions.
 nb::object states_between(const flight::Limits& limits, nb::handle a, nb::handle b, nb::handle shares) {
   const Flights flights(a, b);
   const Floats of(shares, "shares");
